@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What acts on the robot from outside: drives and loads.
+#pragma once
+
+#include <string>
+
+#include "engine/math/types.h"
+#include "engine/model/body_spec.h"
+#include "engine/model/place.h"
+#include "engine/model/profile.h"
+
+namespace cprsim {
+
+enum class DriveQuantity { kPosition, kVelocity, kEffort, kLength };
+
+struct DriveSpec {
+  Place place;
+  DriveQuantity quantity = DriveQuantity::kPosition;
+  int joint = -1;  ///< index into Scene::joints, or
+  int rod = -1;    ///< index into Scene::rods (length)
+  Profile profile;
+};
+
+/// A force and torque at a point of a body, or of a rod at s = rod_s · length, times profile(t)
+/// (constant 1 if the scene gives no time function).
+struct LoadSpec {
+  Place place;
+  int rod = -1;  ///< index into Scene::rods, or -1: acts on `at`
+  double rod_s = 0;
+  FrameRef at;
+  bool follower = false;  ///< components in the axes of `at` or of the section instead of the world
+  Mat3 R_expressed = Mat3::Identity();  ///< non-follower: axes of expressed_in at t = 0 in the world;
+                                        ///< follower: in the axes of `at` or of the section
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< in the expressed_in axes
+  bool has_profile = false;
+  Profile profile;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Channels: the one grammar by which recordings, expectations and plots name a number of the robot,
+// `entity[.part].quantity[.component]`. Names are resolved against a scene before anything runs.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cprsim {
+
+struct Scene;
+
+enum class ChannelEntity { kBody, kFrame, kJoint, kRodPoint, kRod, kEnergy, kSolver, kContact };
+
+enum class Quantity {
+  kPosition,
+  kOrientation,  ///< quaternion x y z w
+  kLinearVelocity,
+  kAngularVelocity,
+  kForce,   ///< internal force n (base.wrench: see docs), world axes
+  kMoment,  ///< internal moment m, world axes
+  kCurvature,     ///< u, section axes
+  kShearStretch,  ///< v, section axes
+  kLength,
+  kJointPosition,
+  kJointVelocity,
+  kJointEffort,
+  kEnergyKinetic,
+  kEnergyElastic,
+  kEnergyGravity,
+  kEnergyDissipated,
+  kEnergyWork,
+  kEnergyTotal,
+  kEnergyBalance,
+  kSolverIterations,
+  kSolverResidual,
+  kSolverStep,
+  kSolverWallTime,
+  kContactCount,
+  kContactPenetration
+};
+
+/// One scalar of the robot's state.
+struct Channel {
+  std::string name;  ///< full, e.g. robot::platform.position.x
+  std::string unit;  ///< "m", "rad/s", "1"
+  ChannelEntity entity = ChannelEntity::kBody;
+  int index = -1;      ///< of the body, frame, joint or rod in the scene
+  double s = 0;        ///< rod points: fraction of the length, 0 base .. 1 tip
+  Quantity quantity = Quantity::kPosition;
+  int component = 0;   ///< x y z (w)
+};
+
+/// All scalar channels that `pattern` (with * globs) names; empty if none.
+std::vector<Channel> find_channels(const Scene& scene, std::string_view pattern);
+
+/// The known channel stems nearest to a misspelt one, best first, at most `count`.
+std::vector<std::string> nearest_channels(const Scene& scene, std::string_view pattern,
+                                          std::size_t count = 3);
+
+}  // namespace cprsim

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions of time that drives and loads follow: a sum of simple shapes, with first and second
+// derivatives and the instants at which they are not smooth.
+#pragma once
+
+#include <vector>
+
+#include "engine/model/place.h"
+
+namespace cprsim {
+
+enum class ShapeOfTime { kConstant, kStep, kRamp, kSmoothstep, kSine, kKeyframes };
+enum class Interpolation { kStep, kLinear, kPchip, kCubic };
+
+/// One summand. Step: `from` before `start`, `to` after. Ramp and smoothstep (quintic) go from `from` to
+/// `to` between start and end. Sine: amplitude sin(2 pi frequency (t - start) + phase) within
+/// [start, end], 0 outside. Keyframes hold their first and last value outside.
+struct ProfileTerm {
+  ShapeOfTime shape = ShapeOfTime::kConstant;
+  double value = 0;  ///< constant
+  double from = 0, to = 0, start = 0, end = 0;
+  double amplitude = 0, frequency = 0, phase = 0;
+  Interpolation interpolation = Interpolation::kLinear;
+  std::vector<double> times, values, slopes;  ///< keyframes; slopes filled by finish_keyframes()
+};
+
+/// Value and derivatives of a profile at one instant.
+struct ProfileValue {
+  double value = 0, rate = 0, acceleration = 0;
+};
+
+struct Profile {
+  std::vector<ProfileTerm> terms;
+  Place place;
+
+  /// One-sided from the right: at a jump the value after it. `before` takes the left limit instead,
+  /// which is what an initial static equilibrium "before t = 0" sees.
+  ProfileValue evaluate(double t, bool before = false) const;
+
+  /// Instants in (0, end] or at 0 at which the value or a derivative up to the second jumps, ascending.
+  std::vector<double> breakpoints(double end) const;
+};
+
+/// Computes the slopes of pchip (Fritsch-Carlson) and natural cubic keyframes.
+void finish_keyframes(ProfileTerm& term);
+
+}  // namespace cprsim

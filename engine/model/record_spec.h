@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene wants written down, and what it expects to come true.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/model/channel.h"
+#include "engine/model/place.h"
+
+namespace cprsim {
+
+struct RecordSpec {
+  Place place;
+  double rate = 0;  ///< Hz; 0: every step
+  std::string prefix;
+  std::vector<Channel> channels;  ///< globs expanded, in order
+  bool csv = false;
+  int vtk_every = 0;  ///< every n-th record; 0: no VTK
+};
+
+enum class ExpectKind { kValue, kBound, kDrift, kConverged };
+
+struct Expectation {
+  ExpectKind kind = ExpectKind::kConverged;
+  Place place;
+  std::vector<Channel> channels;  ///< scalar channels it speaks of (a vector's components)
+  double at = 0, from = 0;
+  double to = -1;                 ///< -1: the end
+  std::vector<double> equals;     ///< one per channel
+  std::optional<double> tolerance, above, below, min, max;
+};
+
+struct ExpectSpec {
+  std::string name;
+  Place place;
+  std::vector<Expectation> all;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A slender elastic rod as the scene describes it. The cross-section frame's z axis is the tangent,
+// base → tip; arc length is that of the unloaded rod.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/math/types.h"
+#include "engine/model/body_spec.h"
+#include "engine/model/geometry.h"
+#include "engine/model/place.h"
+
+namespace cprsim {
+
+enum class SectionShape { kCircle, kAnnulus, kRectangle, kEllipse };
+
+/// size: circle (radius, _); annulus (outer, inner); rectangle (width along x, height along y);
+/// ellipse semi-axes along x and y. All in m.
+struct SectionSpec {
+  SectionShape shape = SectionShape::kCircle;
+  Vec2 size = Vec2::Zero();
+  Place place;
+};
+
+struct MaterialSpec {
+  double density = 0;         ///< kg/m³
+  double youngs_modulus = 0;  ///< Pa
+  double shear_modulus = 0;   ///< Pa, also when the scene gives Poisson's ratio
+  Place place;
+};
+
+/// Direct stiffnesses that replace those of section and material. Bending x: about the section's x
+/// axis, N m²; torsion N m²; axial and shear N.
+struct StiffnessSpec {
+  std::optional<double> bending_x, bending_y, torsion, axial, shear_x, shear_y;
+  Place place;
+};
+
+/// Kelvin-Voigt coefficients: bending, torsion N m² s; axial, shear N s.
+struct DampingSpec {
+  double bending = 0, torsion = 0, axial = 0, shear = 0;
+  Place place;
+};
+
+enum class EndJoint { kFree, kFixed, kRevolute, kBall, kUniversal };
+
+/// How a rod's end is held. The rod's end frame coincides with `at` when the joint's freedoms are 0:
+/// at the base z points into the rod, at the tip out of it.
+struct RodEndSpec {
+  EndJoint joint = EndJoint::kFree;
+  FrameRef at;
+  Vec3 axis = Vec3::UnitX();  ///< revolute: unit axis in the frame `at`
+  bool spin_free = false;     ///< turns freely about the rod's tangent
+  Place place;
+};
+
+struct RodSpec {
+  std::string name;  ///< scoped
+  Place place;
+  RodEndSpec base, tip;
+  double length = 0;  ///< m, unloaded; a length drive replaces it
+  SectionSpec section;
+  std::optional<MaterialSpec> material;
+  StiffnessSpec stiffness;
+  std::optional<DampingSpec> damping;
+  bool gravity = true;
+  std::vector<std::string> without;  ///< effects switched off for this rod
+  Look look;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene file says: plain structs in SI units, every name resolved to an index, every pose in the
+// world or in a body. Filled by scenes/loader, frozen into a Robot by engine/robot/build.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/math/types.h"
+#include "engine/model/action_spec.h"
+#include "engine/model/body_spec.h"
+#include "engine/model/effects.h"
+#include "engine/model/geometry.h"
+#include "engine/model/record_spec.h"
+#include "engine/model/rod_spec.h"
+#include "engine/model/solver_spec.h"
+#include "engine/model/view_spec.h"
+
+namespace cprsim {
+
+/// A named <frame> (explicit), kept for channels and cameras.
+struct NamedFrame {
+  std::string name;  ///< scoped
+  FrameRef at;
+};
+
+struct Scene {
+  std::string name;
+  std::vector<std::string> files;  ///< [0] the scene itself, then what it includes; Place::file indexes
+  std::string hash;                ///< of the bytes of all files, hex
+
+  Vec3 gravity{0, 0, -9.81};
+  double max_step_size = 0.001;
+  Effects effects;
+  SimulationSpec simulation;
+  SolverSpec solver;
+
+  std::vector<MeshSpec> meshes;
+  std::vector<BodySpec> bodies;
+  std::vector<NamedFrame> frames;
+  std::vector<JointSpec> joints;
+  std::vector<RodSpec> rods;
+  std::vector<DriveSpec> drives;
+  std::vector<LoadSpec> loads;
+
+  EnvironmentSpec environment;
+  std::vector<LightSpec> lights;
+  std::vector<CameraSpec> cameras;
+  std::vector<VideoSpec> videos;
+  std::vector<RecordSpec> records;
+  std::vector<ExpectSpec> expects;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the scene says about how it is to be solved. Empty optionals mean: the program chooses.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/model/place.h"
+
+namespace cprsim {
+
+enum class Mode { kStatic, kQuasistatic, kDynamic };
+enum class Method { kAuto, kShooting };
+enum class ArcIntegrator { kEuler, kRk4, kGauss2, kGauss4, kGauss6 };
+enum class SchemeKind {
+  kBackwardEuler,
+  kBdf2,
+  kBdfAlpha,
+  kGeneralizedAlpha,
+  kTrBdf2,
+  kEsdirk32,
+  kEsdirk43
+};
+enum class NonlinearAlgorithm { kLadder, kNewton, kLevenbergMarquardt };
+
+struct SolverSpec {
+  Place place;
+  Method method = Method::kAuto;
+  std::optional<double> accuracy;               ///< m
+  std::optional<int> points;                    ///< arc-length cells per rod
+  std::optional<ArcIntegrator> integrator;      ///< default gauss4
+  std::optional<SchemeKind> scheme;             ///< default esdirk32
+  std::optional<double> alpha, rho_inf;
+  std::optional<double> step, tolerance;        ///< fixed step s; or relative local error
+  NonlinearAlgorithm algorithm = NonlinearAlgorithm::kLadder;
+  std::optional<double> residual_tolerance;     ///< dimensionless
+  std::optional<int> max_iterations;
+  bool halve_on_failure = true;
+  int retries = 4;
+};
+
+struct SimulationSpec {
+  Place place;
+  Mode mode = Mode::kStatic;
+  double duration = 0;
+  bool initial_static = false;  ///< start from the static equilibrium
+  unsigned seed = 0;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The loop: builds a robot from a scene, finds its start, and advances it step by step. Knows nothing of
+// files, pictures or terminals: an observer receives snapshots.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/model/scene.h"
+#include "engine/run/snapshot.h"
+#include "engine/solve/report.h"
+
+namespace cprsim {
+
+class FreeBodies;  // engine/robot/free_bodies.h: bodies that no rod holds, integrated by somebody else
+
+/// How a run ended.
+enum class RunStatus {
+  kRunning,      ///< advance() may be called
+  kDone,         ///< the duration is reached, or the static equilibrium found
+  kFailed,       ///< see failure
+};
+
+/// Sums over a run, for run.json and the closing lines.
+struct RunStatistics {
+  long steps = 0, rejected = 0, retried = 0;
+  long iterations = 0, max_iterations = 0;
+  long section_evaluations = 0, factorizations = 0;
+  double worst_residual = 0;
+  double smallest_step = 0, largest_step = 0;
+  double build_seconds = 0, start_seconds = 0, step_seconds = 0;
+};
+
+/// Per-rod facts for `info` and run.json.
+struct RodFacts {
+  std::string name;
+  double mass = 0, bending_x = 0, bending_y = 0, torsion = 0, axial = 0, shear_x = 0;
+  double first_frequency = 0;   ///< Hz, as a cantilever
+  double buckling_load = 0;     ///< N, clamped-free Euler load of the weaker plane
+  double growth_exponent = 0;   ///< design section 5, at the step used
+  int cells = 0, segments = 0, unknowns = 0;
+  double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
+};
+
+struct ProblemFacts {
+  std::string integrator, scheme;
+  double step = 0;         ///< fixed step, or 0 when adaptive
+  int body_unknowns = 0, constraint_unknowns = 0;
+  std::vector<RodFacts> rods;
+};
+
+class Simulation {
+ public:
+  /// @param free_bodies may be null if the scene has no free bodies or nothing is to integrate them.
+  /// @throws std::invalid_argument if the scene asks for what the engine cannot do (a loader checks first).
+  explicit Simulation(const Scene& scene, std::unique_ptr<FreeBodies> free_bodies = nullptr);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  const ProblemFacts& facts() const;
+
+  /// Finds the initial state (static equilibrium if the scene asks for it or is static).
+  const SolveReport& start();
+
+  /// One time step (or, in quasi-static mode, one equilibrium). Only while status() is kRunning.
+  const SolveReport& advance();
+
+  RunStatus status() const;
+  double time() const;
+  /// Where the run will end: the duration, 0 for a static scene.
+  double end_time() const;
+  const std::string& failure() const;  ///< a sentence for people when status() is kFailed
+  const SolveReport& last_report() const;
+  const RunStatistics& statistics() const;
+
+  /// State at the end of the last step.
+  const Snapshot& now() const;
+  /// State at its beginning; observers interpolate between the two.
+  const Snapshot& before() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace cprsim
