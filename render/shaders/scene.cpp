@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Three kinds of one program: DIRECT paints ground and sky under the objects; with RANGE it also
+// writes how far away everything is; CACHED takes the unmoving part of the picture from two stored
+// ones, in and out of the light, and decides between them by the shadow of what moves.
+#include "render/shaders/shaders.h"
+
+namespace cprsim::shaders {
+
+const char* const kSceneVertex = R"(
+uniform vec3 ray_centre, ray_right, ray_up;  // of the picture's middle and half its edges
+out vec3 ray;
+void main() {
+  vec2 c = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  ray = ray_centre + c.x * ray_right + c.y * ray_up;
+  gl_Position = vec4(c, 0.0, 1.0);
+}
+)";
+
+const char* const kSceneFragment = R"(
+in vec3 ray;
+uniform sampler2D objects;
+uniform vec3 eye;
+layout(location = 0) out vec4 pixel;
+
+#ifdef CACHED
+uniform sampler2D in_light, in_shade, range;
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 object = texelFetch(objects, at, 0);
+  vec3 color = texelFetch(in_light, at, 0).rgb;
+  float distance = texelFetch(range, at, 0).r;
+  if (distance > 0.0 && object.a < 1.0) {
+    vec3 q = light_coordinates(eye + distance * ray);
+    if (lit_region(q)) {
+      float seen = seen_softly(moving_map, moving_depth, q);
+      if (seen < 1.0) color = mix(texelFetch(in_shade, at, 0).rgb, color, seen);
+    }
+  }
+  pixel = vec4(object.rgb + (1.0 - object.a) * color, 1.0);
+}
+#else
+uniform vec3 ground_color, horizon_color, zenith_color, middle;
+uniform float ground_z, ground_there, grid, cell, fade_from, fade_to;
+#ifdef RANGE
+uniform sampler2D object_depth;
+uniform vec2 depth_terms;  // distance = x / (y - depth)
+layout(location = 1) out float range;
+#endif
+
+vec3 sky(vec3 direction) {
+  float h = clamp(direction.z * 1.6, 0.0, 1.0);
+  return mix(horizon_color, zenith_color, h * (2.0 - h));
+}
+
+// how much of a grid line of the given spacing covers the pixel
+float lines(vec2 p, float spacing, float width) {
+  vec2 c = p / spacing;
+  vec2 w = max(fwidth(c), vec2(1e-6));
+  vec2 d = abs(fract(c - 0.5) - 0.5) / w;
+  vec2 l = clamp(0.5 * width + 0.5 - d, 0.0, 1.0) * clamp(1.5 - 4.0 * w, 0.0, 1.0);
+  return max(l.x, l.y);
+}
+
+vec3 ground(vec3 p, vec3 backdrop) {
+  float away = length(p.xy - middle.xy);
+  float fade = smoothstep(fade_from, fade_to, away);
+  vec3 n = vec3(0.0, 0.0, 1.0);
+  float seen = 1.0;
+  vec3 q = light_coordinates(p);
+  if (lit_region(q)) {
+    if (still_shadow > 0.5) seen = seen_softly(still_map, still_depth, q);
+    if (moving_shadow > 0.5) seen *= seen_softly(moving_map, moving_depth, q);
+  }
+  float line = max(0.45 * lines(p.xy, cell, 1.0), lines(p.xy, 5.0 * cell, 1.3)) * grid;
+  vec3 albedo = decoded(ground_color) * (1.0 - 0.16 * line);
+  vec3 light = ambient_light(n) + key_color * (seen * max(to_key.z, 0.0)) + other_lights(p, n);
+  return mix(encoded(albedo * light), backdrop, fade);
+}
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 object = texelFetch(objects, at, 0);
+  vec3 direction = normalize(ray);
+  vec3 color = sky(direction);
+  float far = (ground_z - eye.z) / ray.z;
+  bool on_ground = ground_there > 0.5 && far > 0.0;
+  vec3 p = eye + (on_ground ? far : 1.0) * ray;
+  vec3 floor_color = ground(p, horizon_color);
+  if (on_ground) color = floor_color;
+#ifdef RANGE
+  float depth = texelFetch(object_depth, at, 0).r;
+  range = depth < 1.0 ? depth_terms.x / (depth_terms.y - depth) : (on_ground ? far : -1.0);
+#endif
+  pixel = vec4(object.rgb + (1.0 - object.a) * color, 1.0);
+}
+#endif
+)";
+
+}  // namespace cprsim::shaders
