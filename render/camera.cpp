@@ -25,6 +25,13 @@ Mat3 look_along(const Vec3& forward, const Vec3& up) {
 
 }  // namespace
 
+Mat4 to_matrix(const Pose& pose) {
+  Mat4 M = Mat4::Identity();
+  M.topLeftCorner<3, 3>() = pose.R;
+  M.topRightCorner<3, 1>() = pose.p;
+  return M;
+}
+
 Mat4 View::projection() const {
   Mat4 P = Mat4::Zero();
   P(0, 0) = 1 / tan_half_x;

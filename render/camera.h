@@ -9,6 +9,8 @@ namespace cprsim {
 
 using Mat4 = Eigen::Matrix4d;
 
+Mat4 to_matrix(const Pose& pose);
+
 /// A perspective view. Camera axes: x right, y up, z backwards out of the picture.
 struct View {
   Vec3 eye = Vec3::Zero();

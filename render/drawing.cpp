@@ -70,6 +70,19 @@ Ribbon make_ribbon(const TraceLine& trace, std::size_t index, double time) {
   return ribbon;
 }
 
+std::array<Vec3, 8> corners_of(const TriMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vertex& vertex : mesh.vertices)
+    box.extend(vertex.position.cast<double>());
+  std::array<Vec3, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners[static_cast<std::size_t>(i)] =
+        mesh.vertices.empty() ? Vec3(Vec3::Zero())
+                              : Vec3(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  }
+  return corners;
+}
+
 bool is_level_plane(const ShapeSpec& shape, const Mat3& R_WS) {
   return shape.kind == ShapeKind::kPlane && shape.normal.norm() > 0 &&
          (R_WS * shape.normal.normalized()).z() > 1 - 1e-9;
@@ -80,9 +93,8 @@ void visit_corners(const std::vector<Part>& parts, const Drawing& drawing, bool 
                    Visit&& visit) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].is_ground || (still_only && parts[i].moves)) continue;
-    for (const Vertex& vertex : parts[i].mesh.vertices) {
-      visit(drawing.part_poses[i] * vertex.position.cast<double>());
-    }
+    for (const Vec3& corner : parts[i].corners)
+      visit(drawing.part_poses[i] * corner);
   }
   if (still_only) return;
   for (const Tube& tube : drawing.tubes) {
@@ -148,6 +160,7 @@ std::vector<Part> make_parts(const Scene& scene) {
       // 5 m: wider than any of these robots, so that its edge is not part of the picture
       part.is_ground = still[i] && is_level_plane(visual.shape, (body.X_WB * visual.X_BV).R) &&
                        visual.shape.size.head<2>().minCoeff() >= 5;
+      part.corners = corners_of(part.mesh);
       if (!part.mesh.indices.empty()) parts.push_back(std::move(part));
     }
   }

@@ -2,6 +2,7 @@
 // What is to be drawn, as plain data: no GL here, and no physics beyond this file.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/model/scene.h"
@@ -17,6 +18,7 @@ struct Part {
   int body = kWorld;
   Pose X_BV;
   TriMesh mesh;
+  std::array<Vec3, 8> corners;  ///< of the box about the mesh
   Look look;
   bool moves = false;
   bool casts_shadow = true;

@@ -13,7 +13,7 @@ namespace {
 /// Linear interpolation in a table of equally spaced 24-bit colours.
 template <std::size_t N>
 Color between(const std::array<unsigned, N>& table, double x) {
-  const auto rgb = [&](std::size_t i) {
+  const auto rgb = [&](std::size_t i) -> Color {
     const unsigned c = table[i];
     return Color(static_cast<float>(c >> 16 & 255U), static_cast<float>(c >> 8 & 255U),
                  static_cast<float>(c & 255U)) /

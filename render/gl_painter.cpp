@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/gl_painter.h"
+
+#include <algorithm>
+
+#include "render/shaders/shaders.h"
+#include "render/sweep.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr int kSamples = 4;  // all that Mesa's software renderer offers
+constexpr double kShadowSoftness =
+    0.022;  // widest half shadow, as a fraction of the shadow map's edge
+constexpr double kShadowOffsetTexels =
+    1.6;  // below 1.2 round rods show stripes of their own shadow
+
+// texture units
+constexpr GLuint kObjects = 0, kStillMap = 1, kStillDepth = 2, kMovingMap = 3, kMovingDepth = 4,
+                 kFirst = 5, kSecond = 6, kThird = 7;
+
+std::string fragment(const char* source, const char* define = "") {
+  return std::string(shaders::kVersion) + define + shaders::kLighting + source;
+}
+
+}  // namespace
+
+struct GlPainter::Textures {
+  Textures(const Gl& gl, int w, int h, int shadow)
+      : object_color(make_texture(gl, GL_RGBA8, w, h, kSamples)),
+        object_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, kSamples)),
+        kept_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, kSamples)),
+        layer(make_texture(gl, GL_RGBA8, w, h, 1)),
+        layer_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, 1)),
+        picture(make_texture(gl, GL_RGBA8, w, h, 1)),
+        in_light(make_texture(gl, GL_RGBA8, w, h, 1)),
+        in_shade(make_texture(gl, GL_RGBA8, w, h, 1)),
+        range(make_texture(gl, GL_R32F, w, h, 1)),
+        still_shadow(make_texture(gl, GL_DEPTH_COMPONENT16, shadow, shadow, 1)),
+        moving_shadow(make_texture(gl, GL_DEPTH_COMPONENT16, shadow, shadow, 1)),
+        to_objects(make_target(gl, {object_color}, object_depth, kSamples)),
+        to_kept_depth(make_target(gl, {}, kept_depth, kSamples)),
+        to_layer(make_target(gl, {layer}, layer_depth, 1)),
+        to_picture(make_target(gl, {picture}, 0, 1)),
+        to_in_light(make_target(gl, {in_light, range}, 0, 1)),
+        to_in_shade(make_target(gl, {in_shade}, 0, 1)),
+        to_still_shadow(make_target(gl, {}, still_shadow, 1)),
+        to_moving_shadow(make_target(gl, {}, moving_shadow, 1)),
+        compare(gl, GlName::Kind::kSampler),
+        plain(gl, GlName::Kind::kSampler) {
+    for (GLuint sampler : {GLuint(compare), GLuint(plain)}) {
+      gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+      gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+    for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+      gl.SamplerParameteri(compare, filter, GL_LINEAR);
+      gl.SamplerParameteri(plain, filter, GL_NEAREST);
+    }
+    gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  }
+
+  GlName object_color, object_depth, kept_depth, layer, layer_depth, picture, in_light, in_shade,
+      range, still_shadow, moving_shadow;
+  GlName to_objects, to_kept_depth, to_layer, to_picture, to_in_light, to_in_shade, to_still_shadow,
+      to_moving_shadow;
+  GlName compare, plain;
+};
+
+GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
+                     const std::vector<Part>& parts)
+    : gl_(gl),
+      width_(width),
+      height_(height),
+      shadow_size_(shadow_size),
+      parts_(parts),
+      textures_(std::make_unique<Textures>(gl, width, height, shadow_size)),
+      tubes_(gl),
+      ribbons_(gl),
+      nothing_(gl, GlName::Kind::kVertexArray) {
+  const std::string version = shaders::kVersion;
+  const std::string whole = version + shaders::kSceneVertex;
+  objects_ = std::make_unique<Program>(gl, version + shaders::kObjectVertex,
+                                       fragment(shaders::kObjectFragment));
+  shadows_ = std::make_unique<Program>(gl, version + shaders::kShadowVertex,
+                                       version + shaders::kShadowFragment);
+  direct_ = std::make_unique<Program>(gl, whole, fragment(shaders::kSceneFragment));
+  ranged_ =
+      std::make_unique<Program>(gl, whole, fragment(shaders::kSceneFragment, "#define RANGE\n"));
+  cached_ =
+      std::make_unique<Program>(gl, whole, fragment(shaders::kSceneFragment, "#define CACHED\n"));
+  for (const Part& part : parts) {
+    geometries_.emplace_back(gl);
+    geometries_.back().upload(part.mesh);
+  }
+}
+
+GlPainter::~GlPainter() = default;
+
+double GlPainter::softness(const Ball& shadow_ball) const {
+  return 2 * shadow_ball.radius * (kShadowSoftness + 3.0 / shadow_size_);
+}
+
+void GlPainter::paint(const Frame& frame) {
+  const Region whole{0, 0, width_, height_};
+  upload_sweeps(frame);
+  if (frame.light.shadows) draw_shadows(frame, Which::kAll, textures_->to_moving_shadow);
+  draw_objects(frame, Which::kAll, whole, true, false, frame.light.shadows);
+  resolve(whole);
+  limit(whole);
+  compose(*direct_, frame, textures_->to_picture, true, false, frame.light.shadows);
+}
+
+void GlPainter::store_still(const Frame& frame) {
+  const Region whole{0, 0, width_, height_};
+  const bool shadows = frame.light.shadows;
+  if (shadows) draw_shadows(frame, Which::kStill, textures_->to_still_shadow);
+  draw_objects(frame, Which::kStill, whole, true, shadows, false);
+  resolve(whole);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_objects);
+  for (GLuint target : {GLuint(textures_->to_kept_depth), GLuint(textures_->to_layer)}) {
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+    gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT,
+                        GL_NEAREST);
+  }
+  limit(whole);
+  compose(*ranged_, frame, textures_->to_in_light, true, shadows, false);
+  draw_objects(frame, Which::kStill, whole, false, false, false);
+  resolve(whole);
+  limit(whole);
+  compose(*direct_, frame, textures_->to_in_shade, false, false, false);
+}
+
+void GlPainter::paint_moving(const Frame& frame, const Region& region) {
+  if (region.empty()) return;
+  upload_sweeps(frame);
+  if (frame.light.shadows) draw_shadows(frame, Which::kMoving, textures_->to_moving_shadow);
+  draw_objects(frame, Which::kMoving, region, true, frame.light.shadows, frame.light.shadows);
+  resolve(region);
+  limit(region);
+  compose(*cached_, frame, textures_->to_picture, true, false, frame.light.shadows);
+}
+
+void GlPainter::upload_sweeps(const Frame& frame) {
+  TriMesh mesh;
+  for (const Tube& tube : frame.drawing.tubes)
+    sweep_tube(tube, frame.view, mesh);
+  tubes_.upload(mesh);
+  mesh = {};
+  for (const Ribbon& ribbon : frame.drawing.ribbons)
+    sweep_ribbon(ribbon, frame.view, mesh);
+  ribbons_.upload(mesh);
+}
+
+bool GlPainter::drawn(std::size_t part, Which which) const {
+  if (parts_[part].is_ground) return false;
+  // glass is drawn with what moves: what shines through it may be moving
+  const bool moving = parts_[part].moves || parts_[part].look.opacity < 1;
+  return which == Which::kAll || (which == Which::kMoving) == moving;
+}
+
+void GlPainter::draw_shadows(const Frame& frame, Which which, GLuint target) {
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+  gl_.Viewport(0, 0, shadow_size_, shadow_size_);
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.Disable(GL_BLEND);
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthMask(GL_TRUE);
+  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  gl_.Enable(GL_POLYGON_OFFSET_FILL);
+  gl_.PolygonOffset(1.5F, 2.0F);
+  shadows_->use();
+  shadows_->set("clip_from_world", light_projection(-frame.light.to_key, frame.shadow_ball.centre,
+                                                    frame.shadow_ball.radius));
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (!drawn(i, which) || !parts_[i].casts_shadow || parts_[i].look.opacity < 0.5) continue;
+    shadows_->set("world_from_object", to_matrix(frame.drawing.part_poses[i]));
+    geometries_[i].draw();
+  }
+  if (which != Which::kStill) {
+    shadows_->set("world_from_object", Mat4(Mat4::Identity()));
+    tubes_.draw();
+  }
+  gl_.Disable(GL_POLYGON_OFFSET_FILL);
+}
+
+void GlPainter::draw_part(const Frame& frame, std::size_t i) const {
+  const Look& look = parts_[i].look;
+  objects_->set("world_from_object", to_matrix(frame.drawing.part_poses[i]));
+  objects_->set("specular", look.specular);
+  objects_->set("emissive", look.emissive);
+  objects_->set("shininess", std::clamp(look.shininess, 1.0, 200.0));
+  geometries_[i].draw();
+}
+
+void GlPainter::draw_objects(const Frame& frame, Which which, const Region& region, bool key_light,
+                             bool still_shadow, bool moving_shadow) {
+  limit(region);
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthMask(GL_TRUE);
+  if (which == Which::kMoving) {
+    // what does not move is already there, as depth
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_kept_depth);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, textures_->to_objects);
+    gl_.BlitFramebuffer(region.x0, region.y0, region.x1, region.y1, region.x0, region.y0, region.x1,
+                        region.y1, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  }
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, textures_->to_objects);
+  gl_.ClearColor(0, 0, 0, 0);
+  gl_.Clear(which == Which::kMoving ? GL_COLOR_BUFFER_BIT
+                                    : GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const bool cut = frame.backdrop.ground && frame.view.eye.z() > frame.backdrop.ground_z;
+  if (cut) gl_.Enable(GL_CLIP_DISTANCE0);
+  objects_->use();
+  set_lighting(*objects_, frame, key_light, still_shadow, moving_shadow);
+  objects_->set("clip_from_world", frame.view.projection());
+  objects_->set("cut", Vec4(0, 0, 1, -frame.backdrop.ground_z));
+  objects_->set("unlit", 0.0);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (drawn(i, which) && parts_[i].look.opacity >= 1) draw_part(frame, i);
+  }
+  if (which != Which::kStill) draw_sweeps_and_glass(frame, which);
+  gl_.Disable(GL_CLIP_DISTANCE0);
+}
+
+void GlPainter::draw_sweeps_and_glass(const Frame& frame, Which which) {
+  const Look look = frame.drawing.tubes.empty() ? Look{} : frame.drawing.tubes.front().look;
+  objects_->set("world_from_object", Mat4(Mat4::Identity()));
+  objects_->set("specular", look.specular);
+  objects_->set("emissive", look.emissive);
+  objects_->set("shininess", std::clamp(look.shininess, 1.0, 200.0));
+  tubes_.draw();
+
+  gl_.Enable(GL_BLEND);
+  gl_.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl_.DepthMask(GL_FALSE);
+  objects_->set("unlit", 1.0);
+  ribbons_.draw();
+  objects_->set("unlit", 0.0);
+  // the farthest first
+  std::vector<std::pair<double, std::size_t>> glass;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (!drawn(i, which) || parts_[i].look.opacity >= 1) continue;
+    glass.emplace_back(-(frame.drawing.part_poses[i].p - frame.view.eye).norm(), i);
+  }
+  std::sort(glass.begin(), glass.end());
+  for (const auto& [distance, i] : glass)
+    draw_part(frame, i);
+  gl_.DepthMask(GL_TRUE);
+  gl_.Disable(GL_BLEND);
+}
+
+void GlPainter::resolve(const Region& r) const {
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_objects);
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, textures_->to_layer);
+  gl_.BlitFramebuffer(r.x0, r.y0, r.x1, r.y1, r.x0, r.y0, r.x1, r.y1, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
+}
+
+void GlPainter::compose(const Program& program, const Frame& frame, GLuint target, bool key_light,
+                        bool still_shadow, bool moving_shadow) const {
+  const View& view = frame.view;
+  const Backdrop& backdrop = frame.backdrop;
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+  gl_.Disable(GL_DEPTH_TEST);
+  program.use();
+  set_lighting(program, frame, key_light, still_shadow, moving_shadow);
+  // a ray's length is its depth
+  program.set("ray_centre", Vec3(-view.R_WC.col(2)));
+  program.set("ray_right", Vec3(view.tan_half_x * view.R_WC.col(0)));
+  program.set("ray_up", Vec3(view.tan_half_y * view.R_WC.col(1)));
+  program.set("ground_color", backdrop.ground_color);
+  program.set("horizon_color", backdrop.horizon_color);
+  program.set("zenith_color", backdrop.zenith_color);
+  program.set("middle", backdrop.middle);
+  program.set("ground_z", backdrop.ground_z);
+  program.set("ground_there", backdrop.ground ? 1.0 : 0.0);
+  program.set("grid", backdrop.grid ? 1.0 : 0.0);
+  program.set("cell", backdrop.cell);
+  program.set("fade_from", backdrop.fade_from);
+  program.set("fade_to", backdrop.fade_to);
+  program.set("depth_terms", Vec2(view.far * view.near / (view.far - view.near),
+                                  view.far / (view.far - view.near)));
+  program.set("objects", static_cast<int>(kObjects));
+  bind(kObjects, textures_->layer);
+  if (&program == ranged_.get()) {
+    program.set("object_depth", static_cast<int>(kFirst));
+    bind(kFirst, textures_->layer_depth);
+  }
+  if (&program == cached_.get()) {
+    program.set("in_light", static_cast<int>(kFirst));
+    program.set("in_shade", static_cast<int>(kSecond));
+    program.set("range", static_cast<int>(kThird));
+    bind(kFirst, textures_->in_light);
+    bind(kSecond, textures_->in_shade);
+    bind(kThird, textures_->range);
+  }
+  gl_.BindVertexArray(nothing_);
+  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_.Disable(GL_SCISSOR_TEST);
+}
+
+void GlPainter::set_lighting(const Program& program, const Frame& frame, bool key_light,
+                             bool still_shadow, bool moving_shadow) const {
+  const Lighting& light = frame.light;
+  program.set("eye", frame.view.eye);
+  program.set("to_key", light.to_key);
+  program.set("key_color", key_light ? light.key_color : Vec3(Vec3::Zero()));
+  program.set("ambient_up", light.ambient_up);
+  program.set("ambient_down", light.ambient_down);
+  std::vector<Vec4> places, axes;
+  std::vector<Vec3> colors;
+  for (const Lighting::Other& other : light.others) {
+    places.push_back(other.place);
+    axes.push_back(other.axis);
+    colors.push_back(other.color);
+  }
+  program.set("light_count", static_cast<int>(light.others.size()));
+  program.set("light_place", places);
+  program.set("light_axis", axes);
+  program.set("light_color", colors);
+  program.set("light_clip",
+              light_projection(-light.to_key, frame.shadow_ball.centre, frame.shadow_ball.radius));
+  const double texel = 1.0 / shadow_size_;
+  program.set("shadow_texel", texel);
+  program.set("shadow_softness", kShadowSoftness);
+  program.set("shadow_normal_offset", kShadowOffsetTexels * texel * 2 * frame.shadow_ball.radius);
+  program.set("still_shadow", still_shadow ? 1.0 : 0.0);
+  program.set("moving_shadow", moving_shadow ? 1.0 : 0.0);
+  program.set("still_map", static_cast<int>(kStillMap));
+  program.set("still_depth", static_cast<int>(kStillDepth));
+  program.set("moving_map", static_cast<int>(kMovingMap));
+  program.set("moving_depth", static_cast<int>(kMovingDepth));
+  bind(kStillMap, textures_->still_shadow, textures_->compare);
+  bind(kStillDepth, textures_->still_shadow, textures_->plain);
+  bind(kMovingMap, textures_->moving_shadow, textures_->compare);
+  bind(kMovingDepth, textures_->moving_shadow, textures_->plain);
+}
+
+void GlPainter::bind(GLuint unit, GLuint texture, GLuint sampler) const {
+  gl_.ActiveTexture(GL_TEXTURE0 + unit);
+  gl_.BindTexture(GL_TEXTURE_2D, texture);
+  gl_.BindSampler(unit, sampler);
+}
+
+void GlPainter::limit(const Region& r) const {
+  gl_.Viewport(0, 0, width_, height_);
+  gl_.Enable(GL_SCISSOR_TEST);
+  gl_.Scissor(r.x0, r.y0, r.width(), r.height());
+}
+
+void GlPainter::read_from(GLuint target, const Region& r, std::vector<std::uint8_t>& pixels) const {
+  pixels.resize(4 * static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target);
+  gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl_.ReadPixels(r.x0, r.y0, r.width(), r.height(), GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+}
+
+void GlPainter::read(const Region& region, std::vector<std::uint8_t>& pixels) const {
+  read_from(textures_->to_picture, region, pixels);
+}
+
+void GlPainter::read_still(std::vector<std::uint8_t>& pixels) const {
+  read_from(textures_->to_in_light, {0, 0, width_, height_}, pixels);
+}
+
+}  // namespace cprsim
