@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/run/observe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/model/scene.h"
+
+namespace cprsim {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kExact = 1e-14;  // a handful of rounding errors of numbers of order 1
+
+Mat3 about(const Vec3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+/// A body that falls from rest, turning at a constant rate about one axis.
+Snapshot falling(double t) {
+  Snapshot snapshot;
+  snapshot.time = t;
+  BodySample body;
+  body.X_WB = {about({1, 2, 2}, 3 * t), Vec3(t, 0, 1 - 0.5 * 9.81 * t * t)};
+  body.linear_velocity = Vec3(1, 0, -9.81 * t);
+  body.angular_velocity = 3 * Vec3(1, 2, 2).normalized();
+  snapshot.bodies.push_back(body);
+  JointSample joint;
+  joint.position = t * t * t;
+  joint.velocity = 3 * t * t;
+  snapshot.joints.push_back(joint);
+  snapshot.energy.work = 2 * t;
+  snapshot.solver.iterations = static_cast<int>(std::lround(10 * t));
+  return snapshot;
+}
+
+/// A quarter of a circle of radius R in the x-z plane, tangent z at the base, sampled at n + 1
+/// points.
+RodSample quarter_circle(double R, int n) {
+  RodSample rod;
+  rod.length = R * kPi / 2;
+  for (int i = 0; i <= n; ++i) {
+    RodPoint point;
+    point.s = static_cast<double>(i) / n;
+    const double angle = point.s * kPi / 2;
+    point.position = Vec3(R * (1 - std::cos(angle)), 0, R * std::sin(angle));
+    point.rotation = about(Vec3::UnitY(), angle);
+    point.curvature = Vec3(0, 1 / R, 0);
+    rod.points.push_back(point);
+  }
+  return rod;
+}
+
+Channel channel(ChannelEntity entity, Quantity quantity, int component = 0, double s = 0) {
+  Channel c;
+  c.name = "test";
+  c.entity = entity;
+  c.index = 0;
+  c.s = s;
+  c.quantity = quantity;
+  c.component = component;
+  return c;
+}
+
+TEST(Interpolate, IsExactForCubicMotionAndConstantRates) {
+  const Snapshot a = falling(0.1), b = falling(0.5);
+  for (const double t : {0.1, 0.2, 0.37, 0.5}) {
+    const Snapshot exact = falling(t), got = interpolate(a, b, t);
+    EXPECT_EQ(got.time, t);
+    EXPECT_LT((got.bodies[0].X_WB.p - exact.bodies[0].X_WB.p).norm(), kExact);
+    EXPECT_LT((got.bodies[0].X_WB.R - exact.bodies[0].X_WB.R).norm(), kExact);
+    EXPECT_NEAR(got.joints[0].position, exact.joints[0].position, kExact);
+    EXPECT_NEAR(got.energy.work, exact.energy.work, kExact);
+  }
+}
+
+TEST(Interpolate, ReturnsTheEndsUntouchedAndNeverExtrapolates) {
+  const Snapshot a = falling(0.1), b = falling(0.5);
+  EXPECT_EQ(interpolate(a, b, 0.1).bodies[0].X_WB.p, a.bodies[0].X_WB.p);
+  EXPECT_EQ(interpolate(a, b, 0.5).bodies[0].X_WB.p, b.bodies[0].X_WB.p);
+  EXPECT_EQ(interpolate(a, b, 0.6).bodies[0].X_WB.p, b.bodies[0].X_WB.p);
+  EXPECT_EQ(interpolate(a, b, 0.2).solver.iterations, b.solver.iterations);
+}
+
+TEST(Interpolate, GoesLinearlyWhereNothingHasAVelocity) {
+  Snapshot a = falling(0), b = falling(1);
+  for (Snapshot* s : {&a, &b}) {
+    s->bodies[0].linear_velocity.setZero();
+    s->joints[0].velocity = 0;
+  }
+  const Snapshot quarter = interpolate(a, b, 0.25);
+  EXPECT_LT(
+      (quarter.bodies[0].X_WB.p - (0.75 * a.bodies[0].X_WB.p + 0.25 * b.bodies[0].X_WB.p)).norm(),
+      kExact);
+  EXPECT_NEAR(quarter.joints[0].position, 0.25, kExact);
+}
+
+TEST(Interpolate, KeepsTheGridOfTheLaterStateWhenItChanged) {
+  Snapshot a, b;
+  a.rods.push_back(quarter_circle(1, 8));
+  b.time = 1;
+  b.rods.push_back(quarter_circle(1, 4));
+  const Snapshot half = interpolate(a, b, 0.5);
+  ASSERT_EQ(half.rods[0].points.size(), 5u);
+  EXPECT_LT((half.rods[0].points[1].position - b.rods[0].points[1].position).norm(), kExact);
+}
+
+TEST(PointAt, ErrorFallsWithTheFourthPowerOfTheSpacing) {
+  const auto error = [](int n) {
+    const double s = (1 + 0.5) / n, angle = s * kPi / 2;
+    const RodPoint point = point_at(quarter_circle(1, n), s);
+    return (point.position - Vec3(1 - std::cos(angle), 0, std::sin(angle))).norm();
+  };
+  for (const int n : {4, 8, 16}) {
+    EXPECT_NEAR(std::log2(error(n) / error(2 * n)), 4, 0.2);  // cubic Hermite: h^4
+  }
+}
+
+TEST(PointAt, GivesGridPointsExactlyAndHoldsTheEnds) {
+  const RodSample rod = quarter_circle(0.3, 5);
+  for (const RodPoint& point : rod.points) {
+    EXPECT_EQ(point_at(rod, point.s).position, point.position);
+  }
+  EXPECT_EQ(point_at(rod, 1.5).position, rod.points.back().position);
+  EXPECT_LT((point_at(rod, 0.31).rotation - about(Vec3::UnitY(), 0.31 * kPi / 2)).norm(), kExact);
+}
+
+TEST(PointAt, NamesARodWithoutPoints) {
+  EXPECT_THROW(point_at(RodSample{}, 0.5), std::invalid_argument);
+}
+
+TEST(Evaluate, ReadsBodiesFramesJointsAndRods) {
+  Scene scene;
+  NamedFrame frame;
+  frame.at = {0, {Mat3::Identity(), Vec3(0.1, 0, 0)}};
+  scene.frames.push_back(frame);
+  Snapshot snapshot = falling(0.2);
+  snapshot.rods.push_back(quarter_circle(0.5, 6));
+  const BodySample& body = snapshot.bodies[0];
+
+  EXPECT_EQ(evaluate(channel(ChannelEntity::kBody, Quantity::kPosition, 2), scene, snapshot),
+            body.X_WB.p.z());
+  const Vec3 arm = body.X_WB.R * Vec3(0.1, 0, 0);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(evaluate(channel(ChannelEntity::kFrame, Quantity::kPosition, i), scene, snapshot),
+                (body.X_WB.p + arm)[i], kExact);
+    EXPECT_NEAR(
+        evaluate(channel(ChannelEntity::kFrame, Quantity::kLinearVelocity, i), scene, snapshot),
+        (body.linear_velocity + body.angular_velocity.cross(arm))[i], kExact);
+  }
+  EXPECT_EQ(evaluate(channel(ChannelEntity::kJoint, Quantity::kJointVelocity), scene, snapshot),
+            snapshot.joints[0].velocity);
+  EXPECT_EQ(evaluate(channel(ChannelEntity::kRod, Quantity::kLength), scene, snapshot),
+            0.5 * kPi / 2);
+  EXPECT_NEAR(
+      evaluate(channel(ChannelEntity::kRodPoint, Quantity::kPosition, 0, 1), scene, snapshot), 0.5,
+      kExact);
+  EXPECT_EQ(
+      evaluate(channel(ChannelEntity::kRodPoint, Quantity::kCurvature, 1, 0.4), scene, snapshot),
+      2);
+  EXPECT_NEAR(evaluate(channel(ChannelEntity::kEnergy, Quantity::kEnergyWork), scene, snapshot),
+              0.4, kExact);
+  EXPECT_EQ(evaluate(channel(ChannelEntity::kSolver, Quantity::kSolverIterations), scene, snapshot),
+            2);
+}
+
+TEST(Evaluate, RefusesAQuantityThatTheEntityDoesNotHave) {
+  const Snapshot snapshot = falling(0);
+  EXPECT_THROW(evaluate(channel(ChannelEntity::kBody, Quantity::kLength), Scene{}, snapshot),
+               std::invalid_argument);
+}
+
+TEST(ChannelReader, KeepsTheSignOfAQuaternionContinuousOverTwoTurns) {
+  std::vector<Channel> channels;
+  for (int i = 0; i < 4; ++i) {
+    channels.push_back(channel(ChannelEntity::kBody, Quantity::kOrientation, i));
+  }
+  const Scene scene;
+  ChannelReader reader(scene, channels);
+  Vec4 last = Vec4::Zero();
+  const double step = 4 * kPi / 3 / 60;  // falling() turns at 3 rad/s
+  for (int k = 0; k <= 60; ++k) {
+    const std::vector<double>& row = reader.read(falling(k * step));
+    const Vec4 q(row[0], row[1], row[2], row[3]);
+    EXPECT_NEAR(q.norm(), 1, kExact);
+    if (k > 0) {
+      EXPECT_LT((q - last).norm(), 1.01 * 3 * step / 2);  // |dq| = angle / 2
+    }
+    last = q;
+  }
+  EXPECT_NEAR(last.w(), 1, 1e-12);  // two whole turns: back at the start, not at its negative
+}
+
+}  // namespace
+}  // namespace cprsim

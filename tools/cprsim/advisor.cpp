@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers: gravity ρAgL³/EI, shear EI/(κGA L²), extension and rotary inertia I/(A L²), damping
+// the ratio ζ₁ of the first bending mode.
+#include "tools/cprsim/advisor.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr double kNegligibleBelow = 1e-4;
+constexpr double kMattersAbove = 1e-2;
+
+Advice judge(double number, bool listed) {
+  if (number < kNegligibleBelow) return Advice::kNegligible;
+  if (number <= kMattersAbove) return Advice::kOptional;
+  return listed ? Advice::kListed : Advice::kWorthListing;
+}
+
+}  // namespace
+
+const char* to_string(Advice advice) {
+  switch (advice) {
+    case Advice::kNegligible:
+      return "negligible";
+    case Advice::kOptional:
+      return "small";
+    case Advice::kListed:
+      return "matters, listed";
+    case Advice::kWorthListing:
+      return "matters, NOT listed";
+  }
+  return "";
+}
+
+std::vector<AdviceLine> advise(const Scene& scene, const RodFacts& rod) {
+  std::vector<AdviceLine> lines;
+  const auto add = [&](Effect effect, const char* formula, double number) {
+    const bool listed = scene.effects.has(effect);
+    lines.push_back({effect, formula, number, listed, judge(number, listed)});
+  };
+  add(Effect::kGravity, "rho A g L^3 / EI", rod.gravity_number);
+  add(Effect::kShear, "EI / (k G A L^2)", rod.shear_number);
+  add(Effect::kExtension, "I / (A L^2)", rod.extension_number);
+  if (scene.simulation.mode == Mode::kDynamic) {
+    add(Effect::kRotaryInertia, "I / (A L^2)", rod.extension_number);
+    add(Effect::kDamping, "zeta_1", rod.damping_ratio);
+  }
+  return lines;
+}
+
+}  // namespace cprsim

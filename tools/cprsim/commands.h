@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The commands, one file each. Every one takes the words after its name and returns an exit code.
+#pragma once
+
+#include "tools/cprsim/command_line.h"
+
+namespace cprsim {
+
+int run_command(const Words& words);      ///< simulate; record, film and check as the scene asks
+int check_command(const Words& words);    ///< read and validate only
+int info_command(const Words& words);     ///< what is in a scene, and what follows from it
+int explain_command(const Words& words);  ///< the meaning of a code
+int doctor_command(const Words& words);   ///< what this machine can do
+
+}  // namespace cprsim

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// cprsim info: what is in a scene, what follows from it, and which effects would matter.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "tools/cprsim/advisor.h"
+#include "tools/cprsim/build_simulation.h"
+#include "tools/cprsim/commands.h"
+#include "tools/cprsim/exit_code.h"
+#include "tools/cprsim/names.h"
+#include "tools/cprsim/scene_options.h"
+#include "tools/sinks/output_file.h"
+
+namespace cprsim {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Rods that differ in nothing but their name.
+struct RodGroup {
+  const RodFacts* facts;
+  std::vector<std::string> names;
+};
+
+bool alike(const RodFacts& a, const RodFacts& b) {
+  const auto numbers = [](const RodFacts& r) {
+    return std::vector<double>{
+        r.mass,         r.bending_x,        r.bending_y,     r.torsion,         r.axial,
+        r.shear_x,      r.first_frequency,  r.buckling_load, r.growth_exponent, r.gravity_number,
+        r.shear_number, r.extension_number, r.damping_ratio};
+  };
+  return numbers(a) == numbers(b) && a.cells == b.cells && a.segments == b.segments;
+}
+
+std::vector<RodGroup> groups_of(const ProblemFacts& facts) {
+  std::vector<RodGroup> groups;
+  for (const RodFacts& rod : facts.rods) {
+    auto group = groups.begin();
+    while (group != groups.end() && !alike(*group->facts, rod))
+      ++group;
+    if (group == groups.end()) group = groups.insert(group, RodGroup{&rod, {}});
+    group->names.push_back(rod.name);
+  }
+  return groups;
+}
+
+std::string contents_text(const Scene& scene) {
+  std::string text = fmt::format("{}: {} bodies, {} joints, {} rods, {} drives, {} loads\n",
+                                 scene.name, scene.bodies.size(), scene.joints.size(),
+                                 scene.rods.size(), scene.drives.size(), scene.loads.size());
+  text += fmt::format("  mode       {}", mode_name(scene.simulation.mode));
+  if (scene.simulation.mode != Mode::kStatic) {
+    text += fmt::format(", {} s", scene.simulation.duration);
+  }
+  return text + "\n";
+}
+
+std::string solver_text(const ProblemFacts& facts) {
+  std::string text = fmt::format("  solver     shooting, {}", facts.integrator);
+  if (!facts.scheme.empty()) text += ", " + facts.scheme;
+  if (facts.step > 0) text += fmt::format(", step {} s", facts.step);
+  return text + fmt::format("; {} body unknowns, {} constraint unknowns\n", facts.body_unknowns,
+                            facts.constraint_unknowns);
+}
+
+std::string effects_text(const Scene& scene) {
+  std::string on = "effects on\n  bending, torsion     always\n", off;
+  for (int i = 0; i < kEffectCount; ++i) {
+    const auto effect = static_cast<Effect>(i);
+    if (!scene.effects.has(effect)) {
+      off += std::string(" ") + effect_name(effect);
+      continue;
+    }
+    const std::string place =
+        place_name(scene, scene.effects.asked_at[static_cast<std::size_t>(i)]);
+    on += fmt::format("  {:<20} {}\n", effect_name(effect), place.empty() ? "--with" : place);
+  }
+  return on + (off.empty() ? "" : "effects off\n " + off + "\n");
+}
+
+std::string rod_text(const Scene& scene, const RodGroup& group) {
+  const RodFacts& rod = *group.facts;
+  std::string text = fmt::format("rod {}\n", fmt::join(group.names, ", "));
+  text += fmt::format(
+      "  mass {:.6g} kg, first frequency {:.4g} Hz (cantilever), buckling load {:.4g} N\n",
+      rod.mass, rod.first_frequency, rod.buckling_load);
+  text += fmt::format("  EI {:.6g} {:.6g} N m^2, GJ {:.6g} N m^2, EA {:.6g} N, GA {:.6g} N\n",
+                      rod.bending_x, rod.bending_y, rod.torsion, rod.axial, rod.shear_x);
+  text += fmt::format("  growth exponent {:.3g}, {} points in {} segment{}, {} unknowns\n",
+                      rod.growth_exponent, rod.cells, rod.segments, rod.segments == 1 ? "" : "s",
+                      rod.unknowns);
+  for (const AdviceLine& line : advise(scene, rod)) {
+    text += fmt::format("  {:<15} {:<18} {:>9.2g}  {}\n", effect_name(line.effect), line.formula,
+                        line.number, to_string(line.advice));
+  }
+  return text;
+}
+
+Json rod_json(const Scene& scene, const RodFacts& rod) {
+  Json json = {{"name", rod.name},
+               {"mass", rod.mass},
+               {"bending_x", rod.bending_x},
+               {"bending_y", rod.bending_y},
+               {"torsion", rod.torsion},
+               {"axial", rod.axial},
+               {"shear_x", rod.shear_x},
+               {"first_frequency", rod.first_frequency},
+               {"buckling_load", rod.buckling_load},
+               {"growth_exponent", rod.growth_exponent},
+               {"cells", rod.cells},
+               {"segments", rod.segments},
+               {"unknowns", rod.unknowns},
+               {"advice", Json::array()}};
+  for (const AdviceLine& line : advise(scene, rod)) {
+    json["advice"].push_back({{"effect", effect_name(line.effect)},
+                              {"formula", line.formula},
+                              {"number", line.number},
+                              {"listed", line.listed},
+                              {"advice", to_string(line.advice)}});
+  }
+  return json;
+}
+
+Json to_json(const Scene& scene, const ProblemFacts& facts) {
+  Json json = {{"schema", "cprsim-info/1"},
+               {"name", scene.name},
+               {"hash", scene.hash},
+               {"mode", mode_name(scene.simulation.mode)},
+               {"duration", scene.simulation.duration},
+               {"integrator", facts.integrator},
+               {"scheme", facts.scheme},
+               {"step", facts.step},
+               {"body_unknowns", facts.body_unknowns},
+               {"constraint_unknowns", facts.constraint_unknowns},
+               {"effects", Json::object()},
+               {"rods", Json::array()},
+               {"channels", Json::array()}};
+  for (int i = 0; i < kEffectCount; ++i) {
+    const auto effect = static_cast<Effect>(i);
+    json["effects"][effect_name(effect)] = {
+        {"on", scene.effects.has(effect)},
+        {"asked_at", place_name(scene, scene.effects.asked_at[static_cast<std::size_t>(i)])}};
+  }
+  for (const RodFacts& rod : facts.rods)
+    json["rods"].push_back(rod_json(scene, rod));
+  for (const Channel& channel : find_channels(scene, "*")) {
+    json["channels"].push_back({{"name", channel.name}, {"unit", channel.unit}});
+  }
+  return json;
+}
+
+}  // namespace
+
+int info_command(const Words& words) {
+  std::string path;
+  SceneOptions options;
+  ConsoleOptions console_options;
+  CLI::App app(
+      "Tells what is in a scene and what follows from it, without simulating: stiffness, mass, "
+      "first\n"
+      "frequency, growth exponents, the effects that are on and those that would matter.\n\n"
+      "Examples\n"
+      "  cprsim info scene.xml\n"
+      "  cprsim info scene.xml --step 0.001 --json",
+      "cprsim info");
+  app.add_option("SCENE", path, "The scene file; - reads standard input")
+      ->required()
+      ->type_name("");
+  add_scene_options(app, options);
+  add_console_options(app, console_options);
+  if (const auto code = parse(app, words)) return *code;
+
+  const Console console(console_options);
+  const LoadedScene loaded = load_and_show(path, options, console);
+  if (loaded.scene == nullptr) return kExitSceneInvalid;
+  const Scene& scene = *loaded.scene;
+  try {
+    const auto simulation = build_simulation(scene);
+    const ProblemFacts& facts = simulation->facts();
+    if (console.json()) write_to_stdout(to_json(scene, facts).dump(2) + "\n");
+    console.say(contents_text(scene) + solver_text(facts) + effects_text(scene));
+    for (const RodGroup& group : groups_of(facts))
+      console.say(rod_text(scene, group));
+  } catch (const std::invalid_argument& error) {
+    console.error(path + ": " + error.what());
+    return kExitSceneInvalid;
+  }
+  return kExitDone;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ctrl-C and SIGTERM: the first asks the run to stop after its step, the second stops the process
+// at once.
+#pragma once
+
+namespace cprsim {
+
+/// Installs the handlers, and ignores SIGPIPE so that a closed pipe is an error of write().
+void watch_signals();
+
+/// The signal that asked to stop, or 0.
+int stop_signal();
+
+}  // namespace cprsim

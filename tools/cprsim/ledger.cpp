@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cprsim/ledger.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cprsim {
+
+void Ledger::begin(const Snapshot& start) {
+  note(start);
+}
+
+void Ledger::step(const Snapshot&, const Snapshot& now) {
+  note(now);
+}
+
+void Ledger::note(const Snapshot& now) {
+  energy_ = now.energy;
+  worst_balance_ = std::max(worst_balance_, std::abs(now.energy.balance));
+  largest_work_ = std::max(largest_work_, std::abs(now.energy.work));
+  largest_kinetic_ = std::max(largest_kinetic_, now.energy.kinetic);
+  deepest_penetration_ = std::max(deepest_penetration_, now.contact.penetration);
+}
+
+double Ledger::exchanged() const {
+  return std::max({largest_work_, largest_kinetic_, std::abs(energy_.dissipated)});
+}
+
+}  // namespace cprsim

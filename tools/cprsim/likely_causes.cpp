@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cprsim/likely_causes.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/cprsim/names.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr std::size_t kMostCauses = 5;
+constexpr double kCellsPerGrowth = 6;  ///< cells a rod needs per unit of its growth exponent
+constexpr double kStepsPerPeriod = 10;
+
+using Causes = std::vector<std::string>;
+
+/// A drive or load that jumps within the step that failed.
+void blame_jumps(const Scene& scene, double time, double step, Causes& causes) {
+  const auto blame = [&](const Profile& profile, const Place& place, const char* what) {
+    for (const double t : profile.breakpoints(time + 2 * step)) {
+      if (t < time - 1e-9 || t > time + step) continue;
+      const double jump = std::abs(profile.evaluate(t).value - profile.evaluate(t, true).value);
+      if (jump <= 0) continue;
+      causes.push_back(fmt::format("the {} at {} jumps by {:.3g} at t = {:.6g} s: use a smoothstep",
+                                   what, place_name(scene, place), jump, t));
+    }
+  };
+  for (const DriveSpec& drive : scene.drives)
+    blame(drive.profile, drive.place, "drive");
+  for (const LoadSpec& load : scene.loads) {
+    if (load.has_profile) blame(load.profile, load.place, "load");
+  }
+}
+
+void blame_resolution(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
+  if (!scene.solver.points) return;
+  for (const RodFacts& rod : facts.rods) {
+    const double needed = std::ceil(kCellsPerGrowth * rod.growth_exponent);
+    if (rod.cells >= needed) continue;
+    causes.push_back(fmt::format(
+        "rod '{}' has {} points and a growth exponent of {:.3g}: give it at least {:.0f}, or leave "
+        "<space points> out",
+        rod.name, rod.cells, rod.growth_exponent, needed));
+    return;
+  }
+}
+
+void blame_step(const ProblemFacts& facts, Causes& causes) {
+  const auto fastest = std::max_element(
+      facts.rods.begin(), facts.rods.end(),
+      [](const RodFacts& a, const RodFacts& b) { return a.first_frequency < b.first_frequency; });
+  if (fastest == facts.rods.end() || facts.step <= 0 || fastest->first_frequency <= 0) return;
+  const double steps = 1 / (facts.step * fastest->first_frequency);
+  if (steps >= kStepsPerPeriod) return;
+  causes.push_back(fmt::format(
+      "a step of {:.3g} s gives rod '{}' {:.2g} steps per period of its first mode: try --step "
+      "{:.2g}",
+      facts.step, fastest->name, steps, 1 / (kStepsPerPeriod * 2 * fastest->first_frequency)));
+}
+
+void blame_buckling(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
+  double weight = 0;
+  for (const BodySpec& body : scene.bodies) {
+    if (!body.is_static && scene.effects.has(Effect::kGravity)) {
+      weight += body.mass * scene.gravity.norm();
+    }
+  }
+  double carried = 0;
+  for (const RodFacts& rod : facts.rods)
+    carried += rod.buckling_load;
+  if (facts.rods.empty() || weight < carried) return;
+  causes.push_back(
+      fmt::format("the bodies weigh {:.3g} N, the rods buckle (clamped-free) at {:.3g} N together",
+                  weight, carried));
+}
+
+void blame_tolerance(const Scene& scene, const SolveReport& solve, Causes& causes) {
+  const double tolerance = scene.solver.residual_tolerance.value_or(0);
+  if (solve.status != SolveStatus::kStalled || tolerance <= 0) return;
+  if (solve.residual > 1e3 * tolerance) return;
+  causes.push_back(fmt::format(
+      "the residual stalled at {:.1e}, close to the tolerance {:.1e}: rounding may allow no less",
+      solve.residual, tolerance));
+}
+
+void blame_iterations(const Scene& scene, const SolveReport& solve, Causes& causes) {
+  if (solve.status != SolveStatus::kIterationLimit || !scene.solver.max_iterations) return;
+  causes.push_back(
+      fmt::format("max_iterations = {} is little; the residual had come from {:.1e} to {:.1e}",
+                  *scene.solver.max_iterations, solve.initial_residual, solve.residual));
+}
+
+}  // namespace
+
+Causes likely_causes(const Scene& scene, const ProblemFacts& facts, const SolveReport& solve,
+                     double time, bool started) {
+  Causes causes;
+  const double step = facts.step > 0 ? facts.step : scene.max_step_size;
+  if (started) blame_jumps(scene, time, step, causes);
+  blame_resolution(scene, facts, causes);
+  blame_tolerance(scene, solve, causes);
+  blame_iterations(scene, solve, causes);
+  blame_buckling(scene, facts, causes);
+  if (started) blame_step(facts, causes);
+  if (solve.status == SolveStatus::kSingular) {
+    causes.push_back(
+        "something can move without resistance: an end that nothing holds, a missing joint");
+  }
+  if (started && !scene.effects.has(Effect::kDamping)) {
+    causes.push_back("nothing takes energy out: <damping/> is not among the effects");
+  }
+  if (causes.size() > kMostCauses) causes.resize(kMostCauses);
+  return causes;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The words of the scene language for the engine's enumerations.
+#pragma once
+
+#include <string>
+
+#include "engine/model/scene.h"
+
+namespace cprsim {
+
+const char* mode_name(Mode mode);
+const char* method_name(Method method);
+
+/// "scene.xml:24", or empty if the place is unknown.
+std::string place_name(const Scene& scene, const Place& place);
+
+}  // namespace cprsim

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The folder of a run's results. A folder that cprsim wrote before (it has a run.json) is used
+// again after the files listed there are removed; one with anything else in it is refused.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/sinks/sink.h"
+
+namespace cprsim {
+
+class OutputFolder {
+ public:
+  /// Creates or empties the folder and locks it against a second run. @throws OutputError
+  explicit OutputFolder(std::filesystem::path path);
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  /// Held as long as the folder is in use; the system lets go of it if the process dies.
+  class Lock {
+   public:
+    Lock() = default;
+    ~Lock();
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+    void take(const std::filesystem::path& folder);
+
+   private:
+    int descriptor_ = -1;
+  };
+
+  void remove_earlier_run() const;
+
+  std::filesystem::path path_;
+  Lock lock_;
+};
+
+/// -o if given, else CPRSIM_OUTPUT_DIR/<label> or out/<label>.
+std::filesystem::path choose_output_folder(const std::string& option, const std::string& label);
+
+}  // namespace cprsim

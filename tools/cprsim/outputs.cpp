@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cprsim/outputs.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "tools/cprsim/stopwatch.h"
+#include "tools/sinks/film_sink.h"
+#include "tools/sinks/output_file.h"
+#include "tools/sinks/recording.h"
+#include "tools/sinks/still_sink.h"
+
+namespace cprsim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A file named on the command line, as reports call it: relative if it lies in the output folder.
+std::string report_name(const fs::path& file, const fs::path& folder) {
+  const fs::path absolute = fs::absolute(file).lexically_normal();
+  const fs::path relative = absolute.lexically_relative(fs::absolute(folder).lexically_normal());
+  const bool inside = !relative.empty() && *relative.begin() != "..";
+  return (inside ? relative : absolute).string();
+}
+
+}  // namespace
+
+Outputs::Outputs(const Scene& scene, const RunOptions& options, const fs::path& folder,
+                 const Console& console)
+    : folder_(folder), expectations_(scene) {
+  claimed_.emplace_back("run.json");
+  if (!options.no_record) add_recordings(scene);
+  add_stills(scene, options);
+  if (!options.no_video) add_films(scene, options, console);
+}
+
+void Outputs::add_recordings(const Scene& scene) {
+  for (const RecordSpec& spec : scene.records) {
+    if (spec.csv) claim(spec.prefix + ".csv");
+    if (spec.vtk_every > 0) claim(spec.prefix + ".pvd");
+    sinks_.push_back(std::make_unique<Recording>(scene, spec, folder_));
+  }
+}
+
+void Outputs::add_stills(const Scene& scene, const RunOptions& options) {
+  for (const StillOption& still : options.stills) {
+    sinks_.push_back(std::make_unique<StillSink>(scene, still.time, still.file,
+                                                 report_name(still.file, folder_)));
+  }
+}
+
+void Outputs::add_films(const Scene& scene, const RunOptions& options, const Console& console) {
+  videos_ = scene.videos;
+  const bool asked_for = !options.video.empty();
+  if (asked_for && videos_.empty()) videos_.emplace_back();
+  for (std::size_t i = 0; i < videos_.size(); ++i) {
+    const bool replaced = asked_for && i == 0;
+    const fs::path file = replaced ? fs::path(options.video) : claim(videos_[i].file);
+    try {
+      auto film = std::make_unique<FilmSink>(scene, videos_[i], file, report_name(file, folder_));
+      drawn_by_ = film->device();
+      sinks_.push_back(std::move(film));
+    } catch (const std::runtime_error& error) {
+      if (replaced) throw;
+      console.warn("no film " + file.string() + ": " + error.what());
+    }
+  }
+}
+
+fs::path Outputs::claim(const std::string& name) {
+  const fs::path path(name);
+  const bool leaves = path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end();
+  if (name.empty() || leaves) {
+    throw OutputError("the scene names the file '" + name + "', which is not in the output folder");
+  }
+  if (std::find(claimed_.begin(), claimed_.end(), name) != claimed_.end()) {
+    throw OutputError("the scene writes " + name + " twice; give its recordings other prefixes");
+  }
+  claimed_.push_back(name);
+  std::error_code error;
+  fs::create_directories((folder_ / path).parent_path(), error);
+  if (error) throw OutputError("cannot create the folder of " + name + ": " + error.message());
+  return folder_ / path;
+}
+
+void Outputs::begin(const Snapshot& start) {
+  const Stopwatch watch;
+  expectations_.begin(start);
+  ledger_.begin(start);
+  for (const auto& sink : sinks_)
+    sink->begin(start);
+  seconds_ += watch.seconds();
+}
+
+void Outputs::step(const Snapshot& before, const Snapshot& now) {
+  const Stopwatch watch;
+  expectations_.step(before, now);
+  ledger_.step(before, now);
+  for (const auto& sink : sinks_)
+    sink->step(before, now);
+  seconds_ += watch.seconds();
+}
+
+std::string Outputs::finish() {
+  const Stopwatch watch;
+  std::string complaint;
+  std::vector<std::unique_ptr<Sink>> finished;
+  for (auto& sink : sinks_) {
+    try {
+      sink->finish();
+      finished.push_back(std::move(sink));
+    } catch (const std::runtime_error& error) {
+      if (complaint.empty()) complaint = error.what();
+    }
+  }
+  sinks_ = std::move(finished);
+  seconds_ += watch.seconds();
+  return complaint;
+}
+
+std::vector<WrittenFile> Outputs::files() const {
+  std::vector<WrittenFile> files;
+  for (const auto& sink : sinks_) {
+    for (WrittenFile& file : sink->files())
+      files.push_back(std::move(file));
+  }
+  return files;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All that looks on while a run goes: recordings, films, stills, expectations, the ledger.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/model/scene.h"
+#include "tools/cprsim/console.h"
+#include "tools/cprsim/expectations.h"
+#include "tools/cprsim/ledger.h"
+#include "tools/cprsim/run_options.h"
+#include "tools/sinks/sink.h"
+
+namespace cprsim {
+
+class Outputs {
+ public:
+  /// Opens what scene and options ask for. A film that cannot be made is left out with a warning,
+  /// unless
+  /// --video asked for it. @throws OutputError, std::runtime_error
+  Outputs(const Scene& scene, const RunOptions& options, const std::filesystem::path& folder,
+          const Console& console);
+
+  void begin(const Snapshot& start);
+  void step(const Snapshot& before, const Snapshot& now);
+  /// Completes every file that can be completed. @return the first complaint, or an empty string
+  std::string finish();
+
+  std::vector<WrittenFile> files() const;
+
+  const Expectations& expectations() const { return expectations_; }
+
+  const Ledger& ledger() const { return ledger_; }
+
+  const std::string& drawn_by() const { return drawn_by_; }  ///< empty: no film
+
+  double seconds() const { return seconds_; }  ///< wall time spent here
+
+ private:
+  void add_recordings(const Scene& scene);
+  void add_films(const Scene& scene, const RunOptions& options, const Console& console);
+  void add_stills(const Scene& scene, const RunOptions& options);
+  /// A file that the scene names: it may not leave the folder, nor be named twice.
+  std::filesystem::path claim(const std::string& name);
+
+  std::filesystem::path folder_;
+  std::vector<std::string> claimed_;
+  std::vector<VideoSpec> videos_;  ///< films refer to these
+  std::vector<std::unique_ptr<Sink>> sinks_;
+  Expectations expectations_;
+  Ledger ledger_;
+  std::string drawn_by_;
+  double seconds_ = 0;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// cprsim run: scene in, simulation on, results out.
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <stdexcept>
+
+#include "tools/cprsim/build_simulation.h"
+#include "tools/cprsim/commands.h"
+#include "tools/cprsim/exit_code.h"
+#include "tools/cprsim/interrupt.h"
+#include "tools/cprsim/likely_causes.h"
+#include "tools/cprsim/output_folder.h"
+#include "tools/cprsim/outputs.h"
+#include "tools/cprsim/progress.h"
+#include "tools/cprsim/run_options.h"
+#include "tools/cprsim/run_report.h"
+#include "tools/cprsim/stopwatch.h"
+#include "tools/sinks/output_file.h"
+
+namespace cprsim {
+
+namespace {
+
+struct Run {
+  const Scene& scene;
+  const RunOptions& options;
+  const Console& console;
+  std::filesystem::path folder;
+  Stopwatch watch;
+  RunReport report;
+
+  void write_report() const { write_file(folder / "run.json", to_json(scene, report)); }
+};
+
+bool must_stop(Run& run) {
+  if (stop_signal() != 0) {
+    run.report.end = RunEnd::kInterrupted;
+    run.report.failure = fmt::format("interrupted by signal {}", stop_signal());
+  } else if (run.options.max_wall && run.watch.seconds() > *run.options.max_wall) {
+    run.report.end = RunEnd::kWallTime;
+    run.report.failure = fmt::format("--max-wall {} is used up", *run.options.max_wall);
+  }
+  return run.report.end != RunEnd::kRunning;
+}
+
+/// Advances to the end, or to what stops it; the loop of the program.
+void simulate(Run& run, Simulation& simulation, Outputs& outputs) {
+  Progress progress(run.console.progress(), run.report.label, simulation.end_time());
+  simulation.start();
+  if (simulation.status() != RunStatus::kFailed) outputs.begin(simulation.now());
+  while (simulation.status() == RunStatus::kRunning && !must_stop(run)) {
+    simulation.advance();
+    if (simulation.status() == RunStatus::kFailed) break;
+    outputs.step(simulation.before(), simulation.now());
+    progress.update(simulation.time(), simulation.statistics().steps,
+                    simulation.statistics().iterations);
+  }
+  progress.finish();
+  if (simulation.status() == RunStatus::kDone) run.report.end = RunEnd::kDone;
+}
+
+/// The same, with whatever disk, pipe or graphics have to complain about.
+void simulate_or_complain(Run& run, Simulation& simulation, Outputs& outputs) {
+  std::string complaint;
+  try {
+    simulate(run, simulation, outputs);
+  } catch (const std::runtime_error& error) {
+    complaint = error.what();
+  }
+  const std::string later = outputs.finish();
+  if (complaint.empty()) complaint = later;
+  if (complaint.empty()) return;
+  run.report.end = RunEnd::kOutput;
+  run.report.failure = complaint;
+}
+
+int exit_code_of(const Run& run) {
+  switch (run.report.end) {
+    case RunEnd::kRunning:
+    case RunEnd::kDone:
+      break;
+    case RunEnd::kFailed:
+    case RunEnd::kWallTime:
+      return kExitSimulationFailed;
+    case RunEnd::kInterrupted:
+      return 128 + stop_signal();
+    case RunEnd::kOutput:
+      return kExitEnvironment;
+  }
+  // with --duration an expectation about a later time is left open
+  const bool shortened = run.options.scene.duration.has_value();
+  const auto fails = [&](const ExpectResult& result) {
+    return result.verdict == Verdict::kNotMet ||
+           (result.verdict == Verdict::kNotReached && !shortened);
+  };
+  const auto& results = run.report.expectations;
+  return std::any_of(results.begin(), results.end(), fails) ? kExitExpectationFailed : kExitDone;
+}
+
+void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
+  RunReport& report = run.report;
+  report.time = simulation.time();
+  report.end_time = simulation.end_time();
+  report.statistics = simulation.statistics();
+  report.last_solve = simulation.last_report();
+  if (simulation.status() == RunStatus::kFailed && report.end == RunEnd::kRunning) {
+    report.end = RunEnd::kFailed;
+    report.failure = simulation.failure();
+    const bool started = report.statistics.steps > 0 || report.time > 0;
+    report.likely_causes =
+        likely_causes(run.scene, report.facts, report.last_solve, report.time, started);
+  }
+  report.ledger = outputs.ledger();
+  report.expectations = outputs.expectations().results(report.end == RunEnd::kDone);
+  report.files = outputs.files();
+  report.exit_code = exit_code_of(run);
+  report.timings.build = report.statistics.build_seconds;
+  report.timings.start = report.statistics.start_seconds;
+  report.timings.steps = report.statistics.step_seconds;
+  report.timings.outputs = outputs.seconds();
+  report.timings.total = run.watch.seconds();
+}
+
+void show(const Run& run) {
+  const RunReport& report = run.report;
+  if (run.console.json()) write_to_stdout(to_json(run.scene, report));
+  if (report.end == RunEnd::kDone) {
+    run.console.say(to_summary(run.scene, report, run.folder.string()));
+    if (report.exit_code != kExitDone) run.console.error("an expectation is not met");
+    return;
+  }
+  run.console.error(explain_failure(report, run.folder.string()));
+}
+
+int run_scene(Run& run, Simulation& simulation) {
+  const OutputFolder folder(run.folder);
+  run.report.facts = simulation.facts();
+  run.write_report();  // says "running", and marks the folder as ours if this process is killed
+  try {
+    Outputs outputs(run.scene, run.options, run.folder, run.console);
+    run.report.film_device = outputs.drawn_by();
+    run.report.files = outputs.files();
+    run.write_report();
+    simulate_or_complain(run, simulation, outputs);
+    conclude(run, simulation, outputs);
+  } catch (const std::runtime_error& error) {
+    run.report.end = RunEnd::kOutput;
+    run.report.failure = error.what();
+    run.report.exit_code = kExitEnvironment;
+  }
+  run.write_report();
+  show(run);
+  return run.report.exit_code;
+}
+
+/// A scene that is invalid, or says that it ought to be.
+int not_to_be_simulated(const LoadedScene& loaded, const RunOptions& options,
+                        const Console& console) {
+  const int code = loaded.rejected_as_expected() ? kExitDone
+                   : loaded.scene != nullptr     ? kExitExpectationFailed
+                                                 : kExitSceneInvalid;
+  if (console.json()) {
+    write_to_stdout(rejection_json(options.path, code, loaded.diagnostics));
+  } else if (code == kExitDone) {
+    console.say(fmt::format("{}: rejected with {}, as it expects\n", options.path,
+                            loaded.expected_failure));
+  }
+  if (code == kExitExpectationFailed) {
+    console.error(fmt::format("{} expects to be rejected with {}, but is valid", options.path,
+                              loaded.expected_failure));
+  }
+  return code;
+}
+
+}  // namespace
+
+int run_command(const Words& words) {
+  const auto parsed = parse_run_options(words);
+  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  const RunOptions& options = std::get<RunOptions>(parsed);
+  const Console console(options.console);
+  // the software rasteriser reads this when it starts
+  if (options.jobs > 0) setenv("LP_NUM_THREADS", std::to_string(options.jobs).c_str(), 1);
+
+  const Stopwatch watch;
+  RunReport report;
+  report.timings.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  const LoadedScene loaded = load_and_show(options.path, options.scene, console);
+  if (loaded.scene == nullptr || !loaded.expected_failure.empty()) {
+    return not_to_be_simulated(loaded, options, console);
+  }
+  const Scene& scene = *loaded.scene;
+  report.diagnostics = loaded.diagnostics;
+  report.timings.load = watch.seconds();
+  report.timings.jobs = options.jobs;
+  report.label = label_of(options.path, scene);
+  report.scene_path = options.path;
+  report.options = options.given();
+
+  Run run{scene, options,          console, choose_output_folder(options.output, report.label),
+          watch, std::move(report)};
+  try {
+    const auto simulation = build_simulation(scene);
+    return run_scene(run, *simulation);
+  } catch (const std::invalid_argument& error) {
+    console.error(options.path + ": " + error.what());
+    return kExitSceneInvalid;
+  }
+}
+
+}  // namespace cprsim

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cprsim/scene_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "scenes/loader/load.h"
+#include "tools/sinks/csv.h"
+
+namespace cprsim {
+
+namespace {
+
+bool positive(double value) {
+  return value > 0;
+}
+
+void add_set(CLI::App& app, SceneOptions& options) {
+  app.add_option_function<std::vector<std::string>>(
+         "--set",
+         [&options](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) {
+             const std::size_t equals = text.find('=');
+             if (equals == std::string::npos || equals == 0) {
+               throw CLI::ValidationError("--set", "'" + text + "' is not of the form PATH=VALUE");
+             }
+             options.set.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+           }
+         },
+         "Change a value, e.g. robot::leg_1/length=0.42")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_list(CLI::App& app, const std::string& name, std::vector<std::string>& list,
+              const std::string& help) {
+  app.add_option(name, list, help)->delimiter(',')->type_name("EFFECTS")->allow_extra_args(false);
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& app, SceneOptions& options) {
+  add_set(app, options);
+  add_list(app, "--with", options.with, "Effects to add, separated by commas");
+  add_list(app, "--without", options.without, "Effects to leave out");
+  add_number(app, "--duration", options.duration, "Simulate this many seconds", "greater than 0",
+             positive);
+  add_number(app, "--step", options.step, "Fixed time step in seconds", "greater than 0", positive);
+  add_number(app, "--accuracy", options.accuracy, "Tip error asked for, in metres",
+             "greater than 0", positive);
+  app.add_option_function<std::string>(
+         "--method", [&options](const std::string& word) { options.method = word; },
+         "How rods are solved, as in <cprsim:solver method>")
+      ->type_name("WHICH");
+  app.add_option_function<std::string>(
+         "--seed",
+         [&options](const std::string& text) {
+           const auto seed = whole_number(text);
+           if (!seed) throw CLI::ValidationError("--seed", "'" + text + "' is not a whole number");
+           options.seed = seed;
+         },
+         "Seed of everything random")
+      ->type_name("N");
+  app.add_option("--resource-path", options.resource_paths, "Where model:// and meshes are found")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  CLI::Option* strict = app.add_flag("--strict", options.strict, "Warnings are errors");
+  app.add_flag("--lax", options.lax, "Unsupported parts of SDF are warnings")->excludes(strict);
+}
+
+bool LoadedScene::rejected_as_expected() const {
+  return scene == nullptr && !expected_failure.empty() &&
+         std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& d) {
+           return d.severity == Severity::kError && d.code == expected_failure;
+         });
+}
+
+LoadedScene load_and_show(const std::string& path, const SceneOptions& options,
+                          const Console& console) {
+  LoadOptions load;
+  load.resource_paths = options.resource_paths;
+  for (std::string& folder : environment_resource_paths()) {
+    load.resource_paths.push_back(std::move(folder));
+  }
+  load.set = options.set;
+  load.with = options.with;
+  load.without = options.without;
+  load.lax = options.lax;
+  load.duration = options.duration;
+  load.step = options.step;
+  load.accuracy = options.accuracy;
+  load.method = options.method;
+  LoadResult result = load_scene(path, load);
+
+  if (options.strict) {
+    for (Diagnostic& d : result.diagnostics) {
+      if (d.severity == Severity::kWarning) d.severity = Severity::kError;
+    }
+  }
+  if (has_errors(result.diagnostics)) result.scene.reset();
+  if (result.scene && options.seed) result.scene->simulation.seed = *options.seed;
+  console.show(result.diagnostics);
+  return {std::move(result.scene), std::move(result.diagnostics),
+          std::move(result.expected_failure)};
+}
+
+std::vector<std::pair<std::string, std::string>> given(const SceneOptions& options) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const auto& [path, value] : options.set)
+    list.emplace_back("--set", path + "=" + value);
+  for (const std::string& effect : options.with)
+    list.emplace_back("--with", effect);
+  for (const std::string& effect : options.without)
+    list.emplace_back("--without", effect);
+  if (options.duration) list.emplace_back("--duration", shortest(*options.duration));
+  if (options.step) list.emplace_back("--step", shortest(*options.step));
+  if (options.accuracy) list.emplace_back("--accuracy", shortest(*options.accuracy));
+  if (options.method) list.emplace_back("--method", *options.method);
+  if (options.seed) list.emplace_back("--seed", std::to_string(*options.seed));
+  if (options.strict) list.emplace_back("--strict", "");
+  if (options.lax) list.emplace_back("--lax", "");
+  return list;
+}
+
+std::string label_of(const std::string& path, const Scene& scene) {
+  return path == "-" ? scene.name : std::filesystem::path(path).stem().string();
+}
+
+}  // namespace cprsim

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "tools/cprsim/run_report.h"
+
+namespace cprsim {
+
+namespace {
+
+std::string first_line(const RunReport& report) {
+  const RunStatistics& statistics = report.statistics;
+  if (report.end_time <= 0) {
+    return fmt::format("{}: static equilibrium found in {:.3g} s, {} iterations\n", report.label,
+                       statistics.start_seconds, report.last_solve.iterations);
+  }
+  return fmt::format(
+      "{}: {:.3f} s simulated in {:.3g} s ({:.2g}x real time), {} steps, {} rejected\n",
+      report.label, report.time, statistics.start_seconds + statistics.step_seconds,
+      report.real_time_factor(), statistics.steps, statistics.rejected);
+}
+
+std::string effects_line(const Scene& scene) {
+  std::string line = "  effects    bending torsion";
+  for (int i = 0; i < kEffectCount; ++i) {
+    const auto effect = static_cast<Effect>(i);
+    if (scene.effects.has(effect)) line += std::string(" ") + effect_name(effect);
+  }
+  return line + "\n";
+}
+
+/// "50 points", or the range if the rods differ.
+std::string cells_of(const ProblemFacts& facts) {
+  if (facts.rods.empty()) return "no rods";
+  const auto [least, most] =
+      std::minmax_element(facts.rods.begin(), facts.rods.end(),
+                          [](const RodFacts& a, const RodFacts& b) { return a.cells < b.cells; });
+  if (least->cells == most->cells) return fmt::format("{} points", least->cells);
+  return fmt::format("{} to {} points", least->cells, most->cells);
+}
+
+std::string solver_line(const Scene& scene, const RunReport& report) {
+  const RunStatistics& statistics = report.statistics;
+  std::string line = fmt::format("  solver     shooting, {}", cells_of(report.facts));
+  if (scene.simulation.mode != Mode::kStatic && statistics.steps > 0) {
+    const double mean =
+        static_cast<double>(statistics.iterations) / static_cast<double>(statistics.steps);
+    line += fmt::format(", {}, {:.1f} iterations/step (max {})", report.facts.scheme, mean,
+                        statistics.max_iterations);
+  }
+  return line + fmt::format(", residual <= {:.0e}\n", statistics.worst_residual);
+}
+
+std::string energy_line(const Scene& scene, const RunReport& report) {
+  const Ledger& ledger = report.ledger;
+  if (scene.simulation.mode == Mode::kStatic) {
+    return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity\n", ledger.energy().elastic,
+                       ledger.energy().gravity);
+  }
+  if (ledger.exchanged() <= 0) return "  energy     nothing moved\n";
+  const char* of = ledger.exchanged() == ledger.largest_work()      ? "work done"
+                   : ledger.exchanged() == ledger.largest_kinetic() ? "largest kinetic energy"
+                                                                    : "energy dissipated";
+  return fmt::format("  energy     balance closes to {:.1e} of the {}\n",
+                     ledger.worst_balance() / ledger.exchanged(), of);
+}
+
+std::string check_line(const CheckResult& check) {
+  if (check.channel.empty()) return fmt::format("{}: the run did not converge", check.kind);
+  return fmt::format("{} = {:.6g} at t = {:.6g} s, expected {}", check.channel, check.value,
+                     check.time, check.limit);
+}
+
+std::string expect_lines(const RunReport& report) {
+  const auto count = [&](Verdict verdict) {
+    return std::count_if(report.expectations.begin(), report.expectations.end(),
+                         [&](const ExpectResult& result) { return result.verdict == verdict; });
+  };
+  if (report.expectations.empty()) return {};
+  std::string lines =
+      fmt::format("  expect     {} of {} met", count(Verdict::kMet), report.expectations.size());
+  if (const auto missing = count(Verdict::kNotReached); missing > 0) {
+    lines += fmt::format(", {} not reached", missing);
+  }
+  lines += '\n';
+  for (const ExpectResult& result : report.expectations) {
+    if (result.verdict == Verdict::kMet) continue;
+    lines += fmt::format("    {}: '{}'\n", to_string(result.verdict), result.name);
+    for (const CheckResult& check : result.checks) {
+      if (check.verdict == Verdict::kNotMet) lines += "      " + check_line(check) + "\n";
+    }
+  }
+  return lines;
+}
+
+std::string wrote_line(const RunReport& report, const std::string& folder) {
+  std::vector<std::string> inside{"run.json"}, elsewhere;
+  for (const WrittenFile& file : report.files) {
+    const bool absolute = !file.name.empty() && file.name.front() == '/';
+    if (file.name.empty() || file.name.back() == '/') continue;
+    (absolute ? elsewhere : inside).push_back(file.name);
+  }
+  std::string line = "  wrote      " + folder + "/";
+  line += inside.size() == 1 ? inside.front() : fmt::format("{{{}}}", fmt::join(inside, ","));
+  for (const std::string& name : elsewhere)
+    line += " " + name;
+  return line + "\n";
+}
+
+}  // namespace
+
+double RunReport::real_time_factor() const {
+  const double wall = statistics.start_seconds + statistics.step_seconds;
+  return wall > 0 ? time / wall : 0;
+}
+
+const char* to_string(RunEnd end) {
+  switch (end) {
+    case RunEnd::kRunning:
+      return "running";
+    case RunEnd::kDone:
+      return "done";
+    case RunEnd::kFailed:
+      return "failed";
+    case RunEnd::kWallTime:
+      return "wall time exceeded";
+    case RunEnd::kInterrupted:
+      return "interrupted";
+    case RunEnd::kOutput:
+      return "output failed";
+  }
+  return "";
+}
+
+std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder) {
+  return first_line(report) + effects_line(scene) + solver_line(scene, report) +
+         energy_line(scene, report) + expect_lines(report) + wrote_line(report, folder);
+}
+
+std::string explain_failure(const RunReport& report, const std::string& folder) {
+  std::string text = report.failure;
+  if (report.end == RunEnd::kFailed) {
+    const SolveReport& solve = report.last_solve;
+    text += fmt::format("\n  at         t = {:.6g} s of {:.6g} s, after {} steps", report.time,
+                        report.end_time, report.statistics.steps);
+    text += fmt::format("\n  solver     {} in {} after {} iterations, residual {:.2e}",
+                        to_string(solve.status), to_string(solve.stage), solve.iterations,
+                        solve.residual);
+    if (!solve.worst_row.empty()) text += "\n  worst row  " + solve.worst_row;
+    for (std::size_t i = 0; i < report.likely_causes.size(); ++i) {
+      text += (i == 0 ? "\n  perhaps    " : "\n             ") + report.likely_causes[i];
+    }
+  }
+  text += "\n" + wrote_line(report, folder);
+  text.pop_back();
+  return text;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/sinks/output_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace cprsim {
+
+namespace {
+
+constexpr std::size_t kBlock = 1 << 16;  ///< bytes lost at most when the process is killed
+
+[[noreturn]] void fail(const std::string& doing, const std::filesystem::path& path) {
+  throw OutputError("cannot " + doing + " " + path.string() + ": " + std::strerror(errno));
+}
+
+void write_all(int descriptor, std::string_view text, const std::filesystem::path& path) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write", path);
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// Makes the rename itself survive a power cut. Some file systems refuse; the file is complete
+/// anyway.
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), part_(path_) {
+  part_ += ".part";
+  descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail("create", part_);
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void OutputFile::write(std::string_view text) {
+  buffer_.append(text);
+  if (buffer_.size() >= kBlock) flush();
+}
+
+void OutputFile::flush() {
+  write_all(descriptor_, buffer_, part_);
+  buffer_.clear();
+}
+
+void OutputFile::commit() {
+  flush();
+  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail("write", part_);
+  close_descriptor();
+  if (::rename(part_.c_str(), path_.c_str()) != 0) fail("rename to its final name", part_);
+  sync_folder(path_.parent_path());
+}
+
+void OutputFile::close_descriptor() {
+  const int descriptor = std::exchange(descriptor_, -1);
+  if (::close(descriptor) != 0) fail("write", part_);
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+void write_to_stdout(std::string_view text) {
+  write_all(STDOUT_FILENO, text, "standard output");
+}
+
+}  // namespace cprsim

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A file that has its name only once it is complete: written as name.part, then synced and renamed.
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace cprsim {
+
+/// A full disk, a closed pipe, a folder that may not be written: exit code 5.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class OutputFile {
+ public:
+  /// Creates path.part. @throws OutputError, as do all members.
+  explicit OutputFile(std::filesystem::path path);
+  /// Without commit() the .part file stays, with all blocks that were flushed.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Buffers; a full block goes to disk.
+  void write(std::string_view text);
+  void flush();
+  /// Flushes, syncs and gives the file its name.
+  void commit();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void close_descriptor();
+
+  std::filesystem::path path_, part_;
+  std::string buffer_;
+  int descriptor_ = -1;
+};
+
+/// The whole of a small file at once.
+void write_file(const std::filesystem::path& path, std::string_view text);
+
+/// Results go here. @throws OutputError when nobody reads them any more.
+void write_to_stdout(std::string_view text);
+
+}  // namespace cprsim

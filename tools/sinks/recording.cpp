@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/sinks/recording.h"
+
+namespace cprsim {
+
+namespace {
+
+/// Steps add up to k/rate only up to rounding; a record this close (in periods) to a step's end is
+/// its.
+constexpr double kRoundOff = 1e-9;
+
+}  // namespace
+
+Recording::Recording(const Scene& scene, const RecordSpec& spec,
+                     const std::filesystem::path& folder)
+    : scene_(scene), spec_(spec), reader_(scene, spec.channels) {
+  if (spec.csv) csv_.emplace(folder / (spec.prefix + ".csv"), spec.channels);
+  if (spec.vtk_every > 0) vtk_.emplace(folder, spec.prefix);
+}
+
+void Recording::begin(const Snapshot& start) {
+  record(start);
+}
+
+void Recording::step(const Snapshot& before, const Snapshot& now) {
+  if (spec_.rate <= 0) {
+    record(now);
+    return;
+  }
+  while (static_cast<double>(records_) <= now.time * spec_.rate + kRoundOff) {
+    const double time = static_cast<double>(records_) / spec_.rate;
+    Snapshot snapshot = interpolate(before, now, time);
+    snapshot.time = time;
+    record(snapshot);
+  }
+}
+
+void Recording::record(const Snapshot& snapshot) {
+  if (csv_) csv_->write_row(snapshot.time, reader_.read(snapshot));
+  if (vtk_ && records_ % spec_.vtk_every == 0) vtk_->write_frame(scene_, snapshot);
+  ++records_;
+}
+
+void Recording::finish() {
+  if (csv_) csv_->finish();
+}
+
+std::vector<WrittenFile> Recording::files() const {
+  std::vector<WrittenFile> files;
+  if (csv_) files.push_back({spec_.prefix + ".csv", "csv", csv_->rows()});
+  if (vtk_) {
+    files.push_back({spec_.prefix + ".pvd", "vtk", vtk_->frames()});
+    files.push_back({spec_.prefix + "_vtk/", "vtk", vtk_->frames()});
+  }
+  return files;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One picture of a run at a given instant, or of its last state.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "engine/model/scene.h"
+#include "render/renderer.h"
+#include "tools/sinks/sink.h"
+
+namespace cprsim {
+
+class StillSink : public Sink {
+ public:
+  /// @param time empty: the last state
+  StillSink(const Scene& scene, std::optional<double> time, std::filesystem::path file,
+            std::string name);
+
+  void begin(const Snapshot& start) override;
+  void step(const Snapshot& before, const Snapshot& now) override;
+  void finish() override;
+  std::vector<WrittenFile> files() const override;
+
+ private:
+  void follow_traces(const Snapshot& now);
+  void draw(const Snapshot& snapshot);
+
+  const Scene& scene_;
+  std::optional<double> time_;
+  std::filesystem::path file_;
+  std::string name_;
+  FrameDecor decor_;
+  int camera_ = -1;
+  Snapshot last_;
+  bool begun_ = false, drawn_ = false;
+};
+
+}  // namespace cprsim
