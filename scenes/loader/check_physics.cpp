@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What only the whole scene can tell: effects and their data, masses, lengths, limits,
+// plausibility.
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/loader/reading.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+const Node& node_of_body(const Reading& r, std::size_t body) {
+  return *r.frames.vertices()[at(r.frames.link_of(static_cast<int>(body)))].node;
+}
+
+const Node& node_of_rod(const Reading& r, std::size_t rod) {
+  return *r.frames.rods()[rod].node;
+}
+
+bool given_anywhere(const Node& node, std::string_view name) {
+  return std::any_of(node.children.begin(), node.children.end(),
+                     [&](const auto& child) { return child->name == name; });
+}
+
+void check_masses(Reading& r) {
+  const std::vector<bool> fixed = fixed_bodies(r.scene);
+  for (std::size_t b = 0; b < r.scene.bodies.size(); ++b) {
+    if (fixed[b]) continue;
+    const Node& link = node_of_body(r, b);
+    const Node* inertial = link.child("inertial");
+    if (!inertial) {
+      if (!given_anywhere(link, "inertial"))
+        r.report.missing("E501", link, "movable " + describe(link) + " has no <inertial>")
+            .suggestion = "give mass and inertia, or make its model <static>";
+      continue;
+    }
+    if (!given_anywhere(*inertial, "mass"))
+      r.report.missing("E501", *inertial,
+                       "<inertial> of movable " + describe(link) + " has no <mass>");
+    const Node* inertia = inertial->child("inertia");
+    if (!inertia && !given_anywhere(*inertial, "inertia"))
+      r.report.missing("E501", *inertial,
+                       "<inertial> of movable " + describe(link) + " has no <inertia>");
+    if (!inertia) continue;
+    for (const char* entry : {"ixx", "iyy", "izz"})
+      if (!given_anywhere(*inertia, entry))
+        r.report.missing("E501", *inertia,
+                         "<inertia> of movable " + describe(link) + " has no <" + entry + ">");
+  }
+}
+
+bool switched_off(const RodSpec& rod, Effect effect) {
+  return std::find(rod.without.begin(), rod.without.end(), effect_name(effect)) !=
+         rod.without.end();
+}
+
+void check_effect_data(Reading& r, const Node& world) {
+  const Scene& scene = r.scene;
+  if (!scene.rods.empty() && !given_anywhere(world, "cprsim:effects"))
+    r.report.missing("E504", world, "a world with rods needs <cprsim:effects>, even if empty")
+        .suggestion = "<cprsim:effects><gravity/></cprsim:effects>";
+  const bool damping = scene.effects.has(Effect::kDamping);
+  for (std::size_t k = 0; k < scene.rods.size(); ++k) {
+    const RodSpec& rod = scene.rods[k];
+    const Node& node = node_of_rod(r, k);
+    if (damping && !rod.damping && !switched_off(rod, Effect::kDamping) &&
+        !given_anywhere(node, "damping"))
+      r.report.missing("E503", node, "damping is listed, rod '" + rod.name + "' has no <damping>");
+    if (!damping && rod.damping)
+      r.report.note("W511", node, "rod '" + rod.name + "' has <damping>, damping is not listed");
+    const bool massless = !rod.material && !given_anywhere(node, "material");
+    const bool heavy =
+        scene.effects.has(Effect::kGravity) && rod.gravity && !switched_off(rod, Effect::kGravity);
+    if (massless && (heavy || scene.simulation.mode == Mode::kDynamic) && !node.attribute("class"))
+      r.report.missing("E503", node, "rod '" + rod.name + "' has no density: give a <material>");
+  }
+  const auto& asked = scene.effects.asked_at;
+  if (scene.effects.has(Effect::kFriction) && !scene.effects.has(Effect::kContact))
+    r.report.at(Severity::kWarning, "W503", asked[static_cast<std::size_t>(Effect::kFriction)], 9,
+                "friction is listed, contact is not: there is nothing to rub");
+  if (damping && scene.rods.empty())
+    r.report.at(Severity::kWarning, "W503", asked[static_cast<std::size_t>(Effect::kDamping)], 8,
+                "damping is listed and there is no rod; joints have their own <dynamics>");
+  if (scene.effects.has(Effect::kContact) && !scene.rods.empty())
+    r.report.at(
+        Severity::kWarning, "W506", asked[static_cast<std::size_t>(Effect::kContact)], 8,
+        "rods pass through obstacles in this version; contact is between rigid bodies only");
+}
+
+double thickness(const SectionSpec& section) {
+  if (section.shape == SectionShape::kRectangle) return section.size.maxCoeff();
+  return 2 * section.size.maxCoeff();
+}
+
+void check_plausibility(Reading& r) {
+  for (std::size_t k = 0; k < r.scene.rods.size(); ++k) {
+    const RodSpec& rod = r.scene.rods[k];
+    const Node& node = node_of_rod(r, k);
+    if (rod.material) {
+      const double E = rod.material->youngs_modulus, rho = rod.material->density;
+      if (E > 0 && (E < 1e3 || E > 2e12))
+        r.report.warn("W501", node,
+                      "rod '" + rod.name + "': a Young's modulus of " + format_number(E) +
+                          " Pa is unusual; is it in Pa?");
+      if (rho > 30000 || (rho > 0 && rho < 1))
+        r.report.warn("W501", node,
+                      "rod '" + rod.name + "': a density of " + format_number(rho) +
+                          " kg/m3 is unusual; is it in kg/m3?");
+    }
+    const double d = thickness(rod.section);
+    if (d > 0 && rod.length > 0 && rod.length < 5 * d)
+      r.report.warn("W502", node,
+                    "rod '" + rod.name + "' is only " + format_number(rod.length / d) +
+                        " times as long as thick; rod theory needs slender rods");
+  }
+}
+
+// a clamped or pinned rod between two places that never move must be able to reach
+void check_reach(Reading& r) {
+  const std::vector<bool> fixed = fixed_bodies(r.scene);
+  const auto still = [&](const RodEndSpec& end) {
+    return end.at.body == kWorld || fixed[at(end.at.body)];
+  };
+  const auto where = [&](const RodEndSpec& end) -> Vec3 {
+    return end.at.body == kWorld ? end.at.X_BF.p
+                                 : r.scene.bodies[at(end.at.body)].X_WB * end.at.X_BF.p;
+  };
+  for (std::size_t k = 0; k < r.scene.rods.size(); ++k) {
+    const RodSpec& rod = r.scene.rods[k];
+    const bool driven =
+        std::any_of(r.scene.drives.begin(), r.scene.drives.end(),
+                    [&](const DriveSpec& d) { return d.rod == static_cast<int>(k); });
+    const bool both = rod.tip.joint != EndJoint::kFree && still(rod.base) && still(rod.tip);
+    if (!both || driven || rod.length <= 0 || r.scene.effects.has(Effect::kExtension)) continue;
+    const double distance = (where(rod.tip) - where(rod.base)).norm();
+    if (distance > rod.length * (1 + 1e-9))
+      r.report.missing("E510", node_of_rod(r, k),
+                       "rod '" + rod.name + "', " + format_number(rod.length) +
+                           " m long, cannot reach over " + format_number(distance) +
+                           " m: both ends are fixed and extension is not listed");
+  }
+}
+
+struct Extremes {
+  double least, most, t_least, t_most;
+};
+
+Extremes extremes_of(const Profile& profile, double end) {
+  constexpr int kSamples = 2000;
+  std::vector<double> times = profile.breakpoints(end);
+  times.push_back(0);
+  for (int k = 1; k <= kSamples && end > 0; ++k)
+    times.push_back(end * k / kSamples);
+  Extremes e{HUGE_VAL, -HUGE_VAL, 0, 0};
+  for (const double t : times)
+    for (const bool before : {false, true}) {
+      const double value = profile.evaluate(t, before).value;
+      if (value < e.least) e.least = value, e.t_least = t;
+      if (value > e.most) e.most = value, e.t_most = t;
+    }
+  return e;
+}
+
+void check_drives(Reading& r) {
+  const Scene& scene = r.scene;
+  std::vector<bool> position_driven(scene.joints.size(), false);
+  for (const DriveSpec& drive : scene.drives) {
+    if (drive.profile.terms.empty()) continue;
+    const Extremes e = extremes_of(drive.profile, scene.simulation.duration);
+    if (drive.rod >= 0 && e.least <= 0)
+      r.report.at(Severity::kError, "E508", drive.place, 13,
+                  "the length of '" + scene.rods[at(drive.rod)].name + "' becomes " +
+                      format_number(e.least) + " m at t = " + format_number(e.t_least) + " s");
+    if (drive.joint < 0 || drive.quantity != DriveQuantity::kPosition) continue;
+    const JointSpec& joint = scene.joints[at(drive.joint)];
+    position_driven[at(drive.joint)] = true;
+    const bool low = e.least<joint.lower, high = e.most> joint.upper;
+    if (low || high)
+      r.report.at(Severity::kError, "E508", drive.place, 13,
+                  "the drive takes '" + joint.name + "' to " +
+                      format_number(low ? e.least : e.most) +
+                      " at t = " + format_number(low ? e.t_least : e.t_most) +
+                      " s, beyond its limit " + format_number(low ? joint.lower : joint.upper));
+  }
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const JointSpec& joint = scene.joints[j];
+    const bool limited = std::isfinite(joint.lower) || std::isfinite(joint.upper);
+    if (limited && !position_driven[j])
+      r.report.at(Severity::kWarning, "W505", joint.place, 6,
+                  "nothing enforces the limits of joint '" + joint.name + "' in this version");
+  }
+}
+
+}  // namespace
+
+void check_physics(Reading& r) {
+  const Node& world = *r.frames.scopes()[0].node;
+  check_masses(r);
+  check_effect_data(r, world);
+  check_plausibility(r);
+  check_reach(r);
+  check_drives(r);
+}
+
+}  // namespace cprsim

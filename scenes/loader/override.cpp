@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenes/loader/override.h"
+
+#include <algorithm>
+
+#include "scenes/loader/reporter.h"
+#include "scenes/loader/schema.h"
+#include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr std::string_view kPrefix = "cprsim:";
+
+struct Target {
+  Node* node = nullptr;
+  std::string attribute;  ///< empty: the element's text
+};
+
+struct Lookup {
+  std::vector<Target> found;
+  std::vector<std::string> candidates;  ///< when not exactly one was found
+  std::string problem;
+};
+
+// "a/b::c/@d" -> a, b, c, @d; brackets may hold slashes
+std::vector<std::string> split_path(std::string_view path) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    depth += path[i] == '[' ? 1 : path[i] == ']' ? -1 : 0;
+    const bool scope = depth == 0 && path.substr(i, 2) == "::";
+    if (depth == 0 && (path[i] == '/' || scope)) {
+      parts.emplace_back();
+      i += scope ? 1 : 0;
+    } else {
+      parts.back() += path[i];
+    }
+  }
+  return parts;
+}
+
+bool named(const Node& node, std::string_view key) {
+  for (const char* attribute : {"name", "rod", "joint", "at", "camera", "prefix"})
+    if (node.value(attribute) == key) return true;
+  return false;
+}
+
+bool fits(const Node& node, std::string_view segment) {
+  if (node.name == segment || node.value("name") == segment) return true;
+  return node.name.substr(0, kPrefix.size()) == kPrefix &&
+         std::string_view(node.name).substr(kPrefix.size()) == segment;
+}
+
+std::vector<Node*> step_down(const std::vector<Node*>& from, std::string_view segment) {
+  const std::size_t bracket = segment.find('[');
+  const std::string_view head = segment.substr(0, bracket);
+  std::vector<Node*> matches;
+  for (Node* node : from)
+    for (const auto& child : node->children)
+      if (!child->foreign && fits(*child, head)) matches.push_back(child.get());
+  if (bracket == std::string_view::npos || segment.back() != ']') return matches;
+  const std::string_view key = segment.substr(bracket + 1, segment.size() - bracket - 2);
+  std::vector<Node*> chosen;
+  for (Node* node : matches)
+    if (named(*node, key)) chosen.push_back(node);
+  const auto number = parse_integer(key);
+  if (chosen.empty() && number && *number >= 1 && *number <= static_cast<long long>(matches.size()))
+    chosen.push_back(matches[static_cast<std::size_t>(*number - 1)]);
+  return chosen;
+}
+
+std::string path_of(const Node& node) {
+  std::string text;
+  for (const Node* at = &node; at->parent && at->name != "world"; at = at->parent) {
+    const std::string_view name = at->value("name");
+    const bool entity = at->name == "model" || at->name == "link" || at->name == "joint" ||
+                        at->name == "cprsim:rod" || at->name == "frame";
+    std::string part = name.empty() ? at->name
+                       : entity     ? std::string(name)
+                                    : at->name + "[" + std::string(name) + "]";
+    text = part + (text.empty() ? "" : "/") + text;
+  }
+  return text;
+}
+
+void collect(Node& node, std::string_view segment, std::vector<std::string>& paths) {
+  constexpr std::size_t kMost = 8;
+  for (const auto& child : node.children) {
+    if (paths.size() >= kMost) return;
+    if (fits(*child, segment)) paths.push_back(path_of(*child));
+    collect(*child, segment, paths);
+  }
+}
+
+Lookup look_up(Node& world, std::string_view path) {
+  Lookup result;
+  std::vector<std::string> parts = split_path(path);
+  std::vector<Node*> here{&world};
+  if (!parts.empty() && (parts.front() == "world" || parts.front() == world.value("name")) &&
+      parts.size() > 1)
+    parts.erase(parts.begin());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string& part = parts[i];
+    if (part.substr(0, 1) == "@" && i + 1 == parts.size()) {
+      for (Node* node : here)
+        result.found.push_back({node, part.substr(1)});
+      return result;
+    }
+    std::vector<Node*> next = step_down(here, part);
+    if (next.empty()) {
+      result.problem = "nothing here is called '" + part + "'";
+      std::vector<std::string> names;
+      for (const Node* node : here)
+        for (const auto& child : node->children) {
+          names.push_back(child->name);
+          if (!child->value("name").empty()) names.emplace_back(child->value("name"));
+        }
+      if (const std::string best = nearest_name(part, names); !best.empty())
+        result.problem += ", did you mean '" + best + "'?";
+      const std::string& last = parts.back();
+      collect(world, last.substr(0, last.find('[')), result.candidates);
+      return result;
+    }
+    here = std::move(next);
+  }
+  for (Node* node : here)
+    result.found.push_back({node, ""});
+  return result;
+}
+
+// exactly one value, or the reason why not
+Lookup single(Node& world, std::string_view path) {
+  Lookup result = look_up(world, path);
+  if (result.found.size() > 1) {
+    result.problem = "it fits " + std::to_string(result.found.size()) + " places";
+    for (const Target& target : result.found) {
+      if (result.candidates.size() >= 8) break;
+      result.candidates.push_back(path_of(*target.node) +
+                                  (target.attribute.empty() ? "" : "/@" + target.attribute));
+    }
+  } else if (result.found.size() == 1 && result.found[0].attribute.empty() &&
+             !result.found[0].node->children.empty()) {
+    Node& node = *result.found[0].node;
+    result.problem = "<" + node.name + "> holds elements, not a value";
+    for (const auto& child : node.children)
+      result.candidates.push_back(path_of(*child));
+  } else if (result.found.size() == 1 && result.found[0].node == &world) {
+    result.problem = "it names the world itself";
+  }
+  return result;
+}
+
+void explain(Diagnostic& diagnostic, const Lookup& lookup) {
+  for (const std::string& path : lookup.candidates)
+    diagnostic.details.push_back("candidate: " + path);
+}
+
+void set_value(Node& world, const std::string& path, const std::string& value, Reporter& report) {
+  const Lookup lookup = single(world, path);
+  if (!lookup.problem.empty()) {
+    explain(report.at(Severity::kError, "E311", {}, 0,
+                      "--set " + path + "=" + value + ": " + lookup.problem),
+            lookup);
+    return;
+  }
+  Node& node = *lookup.found[0].node;
+  if (lookup.found[0].attribute.empty()) {
+    node.text = trim(value);
+    node.text_place = {};
+  } else {
+    node.set_attribute(lookup.found[0].attribute, value);
+    for (Attribute& a : node.attributes)
+      if (a.name == lookup.found[0].attribute) a.place = a.value_place = {};
+  }
+}
+
+Node& physics_of(Node& world) {
+  for (const auto& child : world.children)
+    if (child->name == "physics" && parse_bool(child->value("default")).value_or(false))
+      return *child;
+  return world.need("physics");
+}
+
+void set_text(Node& node, double value) {
+  node.text = format_number(value);
+  node.text_place = {};
+}
+
+}  // namespace
+
+void apply_overrides(Node& world, const LoadOptions& options, Reporter& report) {
+  if (options.duration) {
+    Node& simulation = world.need("cprsim:simulation");
+    if (!simulation.attribute("mode")) simulation.set_attribute("mode", "dynamic");
+    set_text(simulation.need("duration"), *options.duration);
+  }
+  if (options.accuracy || options.method || options.step) {
+    Node& solver = physics_of(world).need("cprsim:solver");
+    if (!solver.attribute("method")) solver.set_attribute("method", "auto");
+    if (options.method) solver.set_attribute("method", *options.method);
+    if (options.accuracy) set_text(solver.need("accuracy"), *options.accuracy);
+    if (options.step) {
+      set_text(physics_of(world).need("max_step_size"), *options.step);
+      for (const auto& child : solver.children)
+        if (child->name == "time") {
+          auto& list = child->attributes;
+          list.erase(std::remove_if(list.begin(), list.end(),
+                                    [](const Attribute& a) {
+                                      return a.name == "step" || a.name == "tolerance";
+                                    }),
+                     list.end());
+          child->set_attribute("step", format_number(*options.step));
+        }
+    }
+  }
+  for (const auto& [path, value] : options.set)
+    set_value(world, path, value, report);
+}
+
+void check_path(const Node& world, const Attribute& path, const Node& where, Reporter& report) {
+  const auto copy = world.clone();
+  copy->parent = nullptr;
+  const Lookup lookup = single(*copy, path.value);
+  if (!lookup.problem.empty())
+    explain(report.bad_value("E311", where, path, "path '" + path.value + "': " + lookup.problem),
+            lookup);
+}
+
+}  // namespace cprsim

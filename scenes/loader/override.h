@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Paths to values of a scene, and changes made through them before anything is checked:
+//   physics[default]/max_step_size     element names, a name in brackets where several stand beside
+//   each other robot::leg_1/length                entity names robot/leg_1/base/@joint an attribute
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "scenes/loader/document.h"
+#include "scenes/loader/load.h"
+
+namespace cprsim {
+
+class Reporter;
+
+/// Carries out --set, --duration, --step, --accuracy and --method on the tree of the world.
+void apply_overrides(Node& world, const LoadOptions& options, Reporter& report);
+
+/// Reports if the path of a sweep does not lead to exactly one value.
+void check_path(const Node& world, const Attribute& path, const Node& where, Reporter& report);
+
+}  // namespace cprsim

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives, loads and initial velocities.
+#include <set>
+
+#include "scenes/loader/reading.h"
+#include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+// a named profile or the shapes inside; false if neither is given
+bool read_time_function(Reading& r, const Node& node, Profile& profile) {
+  const Attribute* name = node.attribute("profile");
+  profile = read_shapes(r, node);
+  if (!name) return !profile.terms.empty();
+  if (!profile.terms.empty())
+    r.report.error("E310", node, describe(node) + " has a profile and shapes of its own: give one");
+  const auto found = r.profiles.find(name->value);
+  if (found != r.profiles.end()) {
+    profile = found->second;
+    return true;
+  }
+  std::vector<std::string> known;
+  for (const auto& [key, value] : r.profiles)
+    known.push_back(key);
+  r.report.bad_value("E409", node, *name, "there is no profile '" + name->value + "'",
+                     mean(nearest_name(name->value, known)));
+  return true;
+}
+
+bool resolve_driven(Reading& r, const Node& node, int scope, DriveSpec& drive) {
+  const Attribute* joint = node.attribute("joint");
+  const Attribute* rod = node.attribute("rod");
+  if (node.attribute("tendon")) return false;
+  if (!joint == !rod) {
+    r.report.error("E310", node, "a drive acts on a joint or on a rod: give one of the two");
+    return false;
+  }
+  const Attribute& target = joint ? *joint : *rod;
+  const auto found = r.frames.find_outwards(scope, target.value);
+  const FrameKind wanted = joint ? FrameKind::kJoint : FrameKind::kRod;
+  if (!found || found->kind != wanted) {
+    std::vector<std::string> names;
+    for (const std::string& name : r.frames.known_names(scope))
+      if (const auto other = r.frames.find_outwards(scope, name); other && other->kind == wanted)
+        names.push_back(name);
+    r.report.bad_value(
+        joint ? "E403" : "E404", node, target,
+        std::string("there is no ") + (joint ? "joint" : "rod") + " '" + target.value + "'",
+        mean(nearest_name(target.value, names)));
+    return false;
+  }
+  if (rod) {
+    drive.rod = found->index;
+    return true;
+  }
+  const auto index = r.joint_of_vertex.find(found->index);
+  if (index == r.joint_of_vertex.end()) return false;
+  drive.joint = index->second;
+  if (r.scene.joints[at(drive.joint)].kind == JointKind::kFixed)
+    r.report.bad_value("E310", node, target, "a fixed joint cannot be driven");
+  return true;
+}
+
+void read_drive(Reading& r, const Node& node, int scope, std::set<std::pair<int, int>>& driven) {
+  DriveSpec drive;
+  drive.place = node.place;
+  if (!resolve_driven(r, node, scope, drive)) return;
+  const std::string_view quantity = node.value("quantity");
+  drive.quantity = quantity == "velocity" ? DriveQuantity::kVelocity
+                   : quantity == "effort" ? DriveQuantity::kEffort
+                   : quantity == "length" ? DriveQuantity::kLength
+                                          : DriveQuantity::kPosition;
+  if ((drive.quantity == DriveQuantity::kLength) != (drive.rod >= 0))
+    r.report.bad_value("E310", node, *node.attribute("quantity"),
+                       drive.rod >= 0 ? "a rod's drive has the quantity length"
+                                      : "a joint's drive has the quantity position, velocity or "
+                                        "effort");
+  if (!driven.insert({drive.joint, drive.rod}).second)
+    r.report.error("E412", node,
+                   "a second drive of " + (drive.rod >= 0 ? r.scene.rods[at(drive.rod)].name
+                                                          : r.scene.joints[at(drive.joint)].name));
+  bool mentioned = false;
+  for (const auto& child : node.children)
+    mentioned = mentioned || !child->foreign;
+  if (!read_time_function(r, node, drive.profile) && !mentioned)
+    r.report.missing("E303", node,
+                     describe(node) +
+                         " has no function of time: a profile "
+                         "attribute or shapes such as <constant>");
+  r.scene.drives.push_back(std::move(drive));
+}
+
+// a rod and a fraction of its length, as in leg(s=0.5), leg::tip, leg::base
+struct RodPlace {
+  std::string rod;
+  double s = 0;
+};
+
+std::optional<RodPlace> parse_rod_place(std::string_view text) {
+  const auto ends_with = [&](std::string_view end) {
+    return text.size() > end.size() && text.substr(text.size() - end.size()) == end;
+  };
+  if (ends_with("::tip")) return RodPlace{std::string(text.substr(0, text.size() - 5)), 1};
+  if (ends_with("::base")) return RodPlace{std::string(text.substr(0, text.size() - 6)), 0};
+  const std::size_t open = text.find("(s=");
+  if (open == std::string_view::npos || text.back() != ')') return std::nullopt;
+  const auto s = parse_number(text.substr(open + 3, text.size() - open - 4));
+  if (!s) return std::nullopt;
+  return RodPlace{std::string(text.substr(0, open)), *s};
+}
+
+bool resolve_point(Reading& r, const Node& node, int scope, LoadSpec& load) {
+  const Attribute& a = *node.attribute("at");
+  const auto found = r.frames.find_outwards(scope, a.value);
+  if (found && found->kind != FrameKind::kRod) {
+    load.at = r.frames.frame_ref(found->index);
+    return true;
+  }
+  if (found) {
+    r.report.bad_value("E404", node, a, "'" + a.value + "' is a rod: say where on it",
+                       a.value + "::tip or " + a.value + "(s=0.5)");
+    return false;
+  }
+  if (const auto place = parse_rod_place(a.value)) {
+    const auto rod = r.frames.find_outwards(scope, place->rod);
+    if (rod && rod->kind == FrameKind::kRod) {
+      load.rod = rod->index;
+      load.rod_s = place->s;
+      if (place->s < 0 || place->s > 1)
+        r.report.bad_value("E306", node, a, "s is the fraction of the length, 0 to 1");
+      return true;
+    }
+    r.report.bad_value("E404", node, a, "there is no rod '" + place->rod + "'",
+                       mean(nearest_name(place->rod, r.frames.known_names(scope))));
+    return false;
+  }
+  r.report.bad_value("E403", node, a, "there is no link, frame or rod point '" + a.value + "'",
+                     mean(nearest_name(a.value, r.frames.known_names(scope))));
+  return false;
+}
+
+// components are in the world's axes, in axes that never move, or follow the loaded body or section
+void resolve_axes(Reading& r, const Node& node, int scope, const std::vector<bool>& fixed,
+                  LoadSpec& load) {
+  const Attribute* in = node.attribute("expressed_in");
+  if (!in || in->value.empty() || in->value == "world") return;
+  const auto place = parse_rod_place(in->value);
+  if (in->value == node.value("at") && load.rod >= 0) {
+    load.follower = true;
+    return;
+  }
+  const auto found = r.frames.find_outwards(scope, in->value);
+  if (!found || found->kind == FrameKind::kRod) {
+    if (place && r.frames.find_outwards(scope, place->rod))
+      r.report.bad_value("E520", node, *in,
+                         "the axes of another rod point are not available in this version",
+                         "available: world, a fixed frame, or the same place as in at");
+    else
+      r.report.bad_value("E403", node, *in, "there is no frame '" + in->value + "'",
+                         mean(nearest_name(in->value, r.frames.known_names(scope))));
+    return;
+  }
+  const int body = r.frames.body_of(found->index);
+  const Mat3 R_WF = r.frames.X_W(found->index).R;
+  if (body == kWorld || fixed[at(body)]) {
+    load.R_expressed = R_WF;
+  } else if (load.rod < 0 && body == load.at.body) {
+    const Mat3 R_WA = r.scene.bodies[at(body)].X_WB.R * load.at.X_BF.R;
+    load.R_expressed = R_WA.transpose() * R_WF;
+    load.follower = true;
+  } else {
+    r.report.bad_value("E520", node, *in,
+                       "the axes of another moving body are not available in this version",
+                       "available: world, a fixed frame, or a frame of the loaded body");
+  }
+}
+
+void read_load(Reading& r, const Node& node, int scope, const std::vector<bool>& fixed) {
+  LoadSpec load;
+  load.place = node.place;
+  if (!resolve_point(r, node, scope, load)) return;
+  resolve_axes(r, node, scope, fixed, load);
+  load.force = vec3_of(node.child("force"), Vec3::Zero());
+  load.torque = vec3_of(node.child("torque"), Vec3::Zero());
+  bool given = false;
+  for (const auto& child : node.children)
+    given = given || child->name == "force" || child->name == "torque";
+  if (!given) r.report.missing("E303", node, describe(node) + " has no <force> and no <torque>");
+  load.has_profile = read_time_function(r, node, load.profile);
+  r.scene.loads.push_back(std::move(load));
+}
+
+void read_velocities(Reading& r, const Node& world) {
+  const Node* simulation = world.child("cprsim:simulation");
+  const Node* initial = simulation ? simulation->child("initial") : nullptr;
+  if (!initial) return;
+  for (const Node* node : initial->all("velocity")) {
+    const Attribute& of = *node->attribute("of");
+    const auto found = r.frames.find_outwards(0, of.value);
+    if (!found || (found->kind != FrameKind::kLink && found->kind != FrameKind::kModel)) {
+      r.report.bad_value("E403", *node, of, "there is no link '" + of.value + "'",
+                         mean(nearest_name(of.value, r.frames.known_names(0))));
+      continue;
+    }
+    const int body = r.frames.body_of(found->index);
+    if (body == kWorld) continue;
+    BodySpec& spec = r.scene.bodies[at(body)];
+    if (spec.velocity_given) r.report.error("E304", *node, "a second velocity of " + spec.name);
+    if (spec.is_static) r.report.error("E310", *node, spec.name + " is static and cannot move");
+    spec.linear_velocity = vec3_of(node->child("linear"), Vec3::Zero());
+    spec.angular_velocity = vec3_of(node->child("angular"), Vec3::Zero());
+    spec.velocity_given = true;
+  }
+}
+
+}  // namespace
+
+void read_actions(Reading& r, const Node& world) {
+  const std::vector<bool> fixed = fixed_bodies(r.scene);
+  std::set<std::pair<int, int>> driven;
+  for_each_scope(r, [&](int scope, const Node& node) {
+    for (const Node* drive : node.all("cprsim:drive"))
+      read_drive(r, *drive, scope, driven);
+    for (const Node* load : node.all("cprsim:load"))
+      read_load(r, *load, scope, fixed);
+  });
+  read_velocities(r, world);
+}
+
+}  // namespace cprsim

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Videos, records, expectations and sweeps.
+#include <algorithm>
+
+#include "scenes/loader/override.h"
+#include "scenes/loader/reading.h"
+#include "scenes/loader/schema.h"
+#include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr double kMostFrames = 1e5;
+constexpr double kMostSamples = 1e8;
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names)
+    text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? text : "did you mean " + text + "?";
+}
+
+// channels that `pattern` names; an error if there is none
+std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* attribute) {
+  const std::string& pattern = attribute ? attribute->value : node.text;
+  std::vector<Channel> channels = find_channels(r.scene, pattern);
+  if (!channels.empty()) return channels;
+  const std::string quantity = pattern.substr(std::min(pattern.rfind('.'), pattern.size()));
+  if (quantity == ".tension" || quantity == ".displacement") {
+    r.report.error("E520", node, "channels of tendons are not available in this version");
+    return channels;
+  }
+  if (pattern.substr(0, 8) == "contact(") {
+    r.report.error("E520", node, "channels of single contacts are not available in this version",
+                   "available: contact.count, contact.penetration");
+    return channels;
+  }
+  // of something that is there but could not be read: its own error is enough
+  const std::string entity = pattern.substr(0, pattern.find_first_of(".("));
+  if (r.report.failed() && r.frames.find_outwards(0, entity)) return channels;
+  const std::string message = "there is no channel '" + pattern + "'";
+  const std::string hint = list_of(nearest_channels(r.scene, pattern));
+  if (attribute)
+    r.report.bad_value("E411", node, *attribute, message, hint);
+  else
+    r.report.bad_text("E411", node, message, hint);
+  return channels;
+}
+
+// names of output files stay inside the output folder
+void check_file_name(Reading& r, const Node& node, const char* key) {
+  const Attribute& a = *node.attribute(key);
+  const bool leaves = a.value.empty() || a.value.front() == '/' ||
+                      a.value.find("..") != std::string::npos ||
+                      a.value.find('\\') != std::string::npos;
+  if (leaves)
+    r.report.bad_value("E306", node, a, "a file name inside the output folder is needed here");
+}
+
+void read_color_by(const Node& node, VideoSpec& video) {
+  const std::string_view quantity = node.value("quantity");
+  video.color_by = quantity == "curvature"        ? ColorBy::kCurvature
+                   : quantity == "bending_moment" ? ColorBy::kBendingMoment
+                   : quantity == "tension"        ? ColorBy::kTension
+                   : quantity == "strain_energy"  ? ColorBy::kStrainEnergy
+                                                  : ColorBy::kNone;
+  const auto range = parse_numbers(node.value("range"));
+  if (range && range->size() == 2) video.color_range = Vec2((*range)[0], (*range)[1]);
+}
+
+int camera_index(Reading& r, const Node& node) {
+  const Attribute& a = *node.attribute("camera");
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < r.scene.cameras.size(); ++k) {
+    if (r.scene.cameras[k].name == a.value) return static_cast<int>(k);
+    names.push_back(r.scene.cameras[k].name);
+  }
+  r.report.bad_value("E410", node, a, "there is no camera '" + a.value + "'",
+                     mean(nearest_name(a.value, names)));
+  return -1;
+}
+
+void read_video(Reading& r, const Node& node) {
+  VideoSpec video;
+  video.place = node.place;
+  video.file = node.value("file");
+  check_file_name(r, node, "file");
+  video.camera = camera_index(r, node);
+  video.fps = number_attribute(node, "fps", video.fps);
+  video.speed = number_attribute(node, "speed", video.speed);
+  if (r.scene.simulation.duration * video.fps / video.speed > kMostFrames)
+    r.report.error("E509", node, "the film would have more than 100000 frames");
+  for (const Node* trace : node.all("trace")) {
+    TraceSpec spec{std::string(trace->value("of")), number_attribute(*trace, "seconds", 0)};
+    const auto channels = channels_of(r, *trace, trace->attribute("of"));
+    const bool position = channels.size() == 3 && channels[0].quantity == Quantity::kPosition;
+    if (!channels.empty() && !position)
+      r.report.bad_value("E411", *trace, *trace->attribute("of"),
+                         "a trace follows a position, such as robot::platform.position");
+    video.traces.push_back(std::move(spec));
+  }
+  if (const Node* color = node.child("color_by")) read_color_by(*color, video);
+  if (const Node* overlay = node.child("overlay")) {
+    video.overlay = overlay->text;
+    video.show_time = parse_bool(overlay->value("time")).value_or(true);
+  }
+  r.scene.videos.push_back(std::move(video));
+}
+
+void read_record(Reading& r, const Node& node) {
+  RecordSpec record;
+  record.place = node.place;
+  record.rate = number_attribute(node, "rate", 0);
+  record.prefix = node.value("prefix");
+  check_file_name(r, node, "prefix");
+  if (r.scene.simulation.duration * record.rate > kMostSamples)
+    r.report.error("E509", node, "the record would have more than 1e8 samples");
+  for (const Node* channel : node.all("channel"))
+    for (const Channel& found : channels_of(r, *channel, nullptr)) {
+      const auto same = [&](const Channel& other) { return other.name == found.name; };
+      if (std::none_of(record.channels.begin(), record.channels.end(), same))
+        record.channels.push_back(found);
+    }
+  record.csv = node.child("csv") != nullptr;
+  if (const Node* vtk = node.child("vtk"))
+    record.vtk_every = static_cast<int>(number_attribute(*vtk, "every", 1));
+  r.scene.records.push_back(std::move(record));
+}
+
+void check_value(Reading& r, const Node& node, Expectation& e) {
+  const bool one_sided = e.above || e.below;
+  if (!node.attribute("equals") && !one_sided)
+    r.report.missing("E310", node, "<value> needs equals and tolerance, or above, or below");
+  if (node.attribute("equals") && !e.tolerance)
+    r.report.missing("E310", node, "<value equals> needs a tolerance");
+  if (!e.equals.empty() && !e.channels.empty() && e.equals.size() != e.channels.size())
+    r.report.bad_value("E305", node, *node.attribute("equals"),
+                       "'" + std::string(node.value("of")) + "' has " +
+                           std::to_string(e.channels.size()) + " components, " +
+                           std::to_string(e.equals.size()) + " numbers are given");
+  const double end = r.scene.simulation.duration;
+  if (r.scene.simulation.mode != Mode::kStatic && end > 0 && e.at > end * (1 + 1e-9))
+    r.report.bad_value("E306", node, *node.attribute("at"), "the simulation ends before this");
+}
+
+Expectation read_expectation(Reading& r, const Node& node) {
+  Expectation e;
+  e.place = node.place;
+  e.kind = node.name == "value"   ? ExpectKind::kValue
+           : node.name == "bound" ? ExpectKind::kBound
+           : node.name == "drift" ? ExpectKind::kDrift
+                                  : ExpectKind::kConverged;
+  if (const Attribute* of = node.attribute("of")) e.channels = channels_of(r, node, of);
+  e.at = number_attribute(node, "at", 0);
+  e.from = number_attribute(node, "from", 0);
+  e.to = number_attribute(node, "to", -1);
+  e.equals = parse_numbers(node.value("equals")).value_or(std::vector<double>{});
+  e.tolerance = optional_number(node, "tolerance");
+  e.above = optional_number(node, "above");
+  e.below = optional_number(node, "below");
+  e.min = optional_number(node, "min");
+  e.max = optional_number(node, "max");
+  if (e.kind == ExpectKind::kValue) check_value(r, node, e);
+  if (e.kind == ExpectKind::kBound && !e.min && !e.max)
+    r.report.missing("E310", node, "<bound> needs min or max");
+  if (e.min && e.max && *e.min > *e.max)
+    r.report.error("E306", node, "min lies above max: nothing can fulfil this");
+  if (e.kind == ExpectKind::kDrift && !e.below)
+    r.report.missing("E308", node, "<drift> has no attribute below");
+  return e;
+}
+
+void read_expect(Reading& r, const Node& node) {
+  ExpectSpec expect;
+  expect.name = node.value("name");
+  expect.place = node.place;
+  for (const auto& child : node.children) {
+    if (child->broken) continue;
+    if (child->name == "fails") {
+      r.expected_failure = child->value("with");
+      if (explain_code(r.expected_failure).empty())
+        r.report.bad_value("E307", *child, *child->attribute("with"),
+                           "'" + r.expected_failure + "' is no code");
+    } else {
+      expect.all.push_back(read_expectation(r, *child));
+    }
+  }
+  r.scene.expects.push_back(std::move(expect));
+}
+
+void read_sweep(Reading& r, const Node& node, const Node& world) {
+  for (const Node* vary : node.all("vary"))
+    check_path(world, *vary->attribute("path"), *vary, r.report);
+  for (const Node* measure : node.all("measure"))
+    channels_of(r, *measure, measure->attribute("of"));
+  r.report.note("W592", node,
+                describe(node) +
+                    " is not carried out by a run: cprsim sweep is not "
+                    "in this version");
+}
+
+}  // namespace
+
+void read_outputs(Reading& r, const Node& world) {
+  for (const Node* node : world.all("cprsim:video"))
+    read_video(r, *node);
+  for (const Node* node : world.all("cprsim:record"))
+    read_record(r, *node);
+  for (const Node* node : world.all("cprsim:expect"))
+    read_expect(r, *node);
+  for (const Node* node : world.all("cprsim:sweep"))
+    read_sweep(r, *node, world);
+}
+
+}  // namespace cprsim

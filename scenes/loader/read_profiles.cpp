@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions of time.
+#include <cmath>
+
+#include "scenes/loader/reading.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+Interpolation interpolation_of(std::string_view word) {
+  if (word == "step") return Interpolation::kStep;
+  if (word == "pchip") return Interpolation::kPchip;
+  if (word == "cubic") return Interpolation::kCubic;
+  return Interpolation::kLinear;
+}
+
+void read_span(Reading& r, const Node& node, ProfileTerm& term) {
+  term.from = number_attribute(node, "from", 0);
+  term.to = number_attribute(node, "to", 0);
+  term.start = number_attribute(node, "start", 0);
+  term.end = number_attribute(node, "end", 0);
+  if (term.end <= term.start)
+    r.report.error("E306", node, "<" + node.name + "> must end after it starts");
+}
+
+void read_keyframes(const Node& node, ProfileTerm& term) {
+  term.shape = ShapeOfTime::kKeyframes;
+  term.interpolation = interpolation_of(node.value("interpolation"));
+  const auto frames = parse_keyframes(node.text);
+  if (!frames) return;
+  for (const Keyframe& frame : *frames) {
+    term.times.push_back(frame.time);
+    term.values.push_back(frame.value);
+  }
+  finish_keyframes(term);
+}
+
+bool read_term(Reading& r, const Node& node, ProfileTerm& term) {
+  if (node.name == "constant") {
+    term.value = number_attribute(node, "value", 0);
+  } else if (node.name == "step") {
+    term.shape = ShapeOfTime::kStep;
+    term.from = number_attribute(node, "from", 0);
+    term.to = number_attribute(node, "to", 0);
+    term.start = number_attribute(node, "at", 0);
+  } else if (node.name == "ramp" || node.name == "smoothstep") {
+    term.shape = node.name == "ramp" ? ShapeOfTime::kRamp : ShapeOfTime::kSmoothstep;
+    read_span(r, node, term);
+  } else if (node.name == "sine") {
+    term.shape = ShapeOfTime::kSine;
+    term.amplitude = number_attribute(node, "amplitude", 0);
+    term.frequency = number_attribute(node, "frequency", 1);
+    term.phase = number_attribute(node, "phase", 0);
+    term.start = number_attribute(node, "start", 0);
+    term.end = number_attribute(node, "end", HUGE_VAL);
+    if (term.end <= term.start) r.report.error("E306", node, "<sine> must end after it starts");
+  } else if (node.name == "keyframes") {
+    read_keyframes(node, term);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Profile read_shapes(Reading& r, const Node& node) {
+  Profile profile;
+  profile.place = node.place;
+  for (const auto& child : node.children) {
+    if (child->broken) continue;
+    ProfileTerm term;
+    if (read_term(r, *child, term)) profile.terms.push_back(std::move(term));
+  }
+  return profile;
+}
+
+void read_profiles(Reading& r, const Node& world) {
+  for (const auto& child : world.children) {
+    if (child->name != "cprsim:profile") continue;
+    const std::string name(child->value("name"));
+    const bool fresh = r.profiles.emplace(name, read_shapes(r, *child)).second;
+    if (!fresh) r.report.error("E401", *child, "a second profile '" + name + "'");
+    if (child->children.empty() && !child->broken)
+      r.report.missing("E303", *child,
+                       describe(*child) +
+                           " has no shape: constant, step, ramp, "
+                           "smoothstep, sine or keyframes");
+  }
+}
+
+}  // namespace cprsim

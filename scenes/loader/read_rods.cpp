@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rods. A rod takes each part it does not give itself from its class, that class from its own, and
+// so on; within <material>, <stiffness> and <damping> value by value, everything else as a whole.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenes/loader/reading.h"
+#include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+using Chain = std::vector<const Node*>;  ///< the rod, its class, that class's class, ...
+
+const Node* find_class(const Reading& r, int scope, std::string_view name,
+                       std::vector<std::string>& known) {
+  for (int s = scope; s >= 0; s = r.frames.scopes()[at(s)].parent)
+    for (const Node* node : r.frames.scopes()[at(s)].node->all("cprsim:rod_class")) {
+      if (node->value("name") == name) return node;
+      known.emplace_back(node->value("name"));
+    }
+  return nullptr;
+}
+
+Chain inheritance(Reading& r, const RodEntry& rod) {
+  Chain chain{rod.node};
+  while (const Attribute* a = chain.back()->attribute("class")) {
+    std::vector<std::string> known;
+    const Node* next = find_class(r, rod.scope, a->value, known);
+    if (!next) {
+      r.report.bad_value("E408", *chain.back(), *a, "there is no rod class '" + a->value + "'",
+                         mean(nearest_name(a->value, known)));
+      return {};
+    }
+    if (std::find(chain.begin(), chain.end(), next) != chain.end()) {
+      std::string loop;
+      for (std::size_t i = 1; i < chain.size(); ++i)
+        loop += std::string(chain[i]->value("name")) + " -> ";
+      r.report.error("E405", *next, "rod classes form a loop: " + loop + a->value);
+      return {};
+    }
+    chain.push_back(next);
+  }
+  return chain;
+}
+
+const Node* part(const Chain& chain, std::string_view name) {
+  for (const Node* node : chain)
+    if (const Node* found = node->child(name)) return found;
+  return nullptr;
+}
+
+const Node* part(const Chain& chain, std::string_view group, std::string_view key) {
+  for (const Node* node : chain)
+    if (const Node* found = node->child(group))
+      if (const Node* value = found->child(key)) return value;
+  return nullptr;
+}
+
+// given at all, even if wrong: then somebody has already complained
+bool mentioned(const Chain& chain, std::string_view name) {
+  for (const Node* node : chain)
+    for (const auto& child : node->children)
+      if (child->name == name) return true;
+  return false;
+}
+
+void read_section(Reading& r, const Chain& chain, RodSpec& rod) {
+  const Node* node = part(chain, "cross_section");
+  if (!node) {
+    if (!mentioned(chain, "cross_section"))
+      r.report.missing("E505", *chain.front(),
+                       describe(*chain.front()) + " has no <cross_section>");
+    return;
+  }
+  if (node->parent->all("cross_section").size() > 1)
+    r.report.error("E520", *node->parent->all("cross_section")[1],
+                   "cross-sections that vary along the rod are not available in this version",
+                   "available: one <cross_section>");
+  rod.section.place = node->place;
+  const Node* shape = nullptr;
+  for (const auto& child : node->children) {
+    if (child->broken) return;
+    if (shape) r.report.error("E304", *child, "a <cross_section> holds one shape");
+    shape = child.get();
+  }
+  if (!shape) {
+    r.report.missing("E303", *node, "<cross_section> has no shape");
+    return;
+  }
+  const auto size = [&](const char* key) { return number_of(shape->child(key), 0); };
+  SectionSpec& section = rod.section;
+  if (shape->name == "circle") {
+    section.size = Vec2(size("radius"), 0);
+  } else if (shape->name == "annulus") {
+    section.shape = SectionShape::kAnnulus;
+    section.size = Vec2(size("outer_radius"), size("inner_radius"));
+    if (section.size[1] >= section.size[0] && section.size[0] > 0)
+      r.report.error("E506", *shape, "the inner radius is not smaller than the outer one");
+  } else if (shape->name == "rectangle") {
+    section.shape = SectionShape::kRectangle;
+    section.size = Vec2(size("width"), size("height"));
+  } else {
+    section.shape = SectionShape::kEllipse;
+    const Node* axes = shape->child("semi_axes");
+    const auto values = axes ? parse_numbers(axes->text) : std::nullopt;
+    if (values && values->size() == 2) section.size = Vec2((*values)[0], (*values)[1]);
+    if (axes && section.size.minCoeff() <= 0)
+      r.report.bad_text("E306", *axes, "semi-axes must be positive");
+  }
+}
+
+void read_shear_modulus(Reading& r, const Chain& chain, MaterialSpec& material) {
+  for (const Node* node : chain) {
+    const Node* group = node->child("material");
+    if (!group) continue;
+    const Node* modulus = group->child("shear_modulus");
+    const Node* ratio = group->child("poisson_ratio");
+    if (modulus && ratio)
+      r.report.error("E310", *ratio, "give <shear_modulus> or <poisson_ratio>, not both");
+    if (modulus) material.shear_modulus = number_of(modulus, 0);
+    if (ratio) {
+      const double nu = number_of(ratio, 0);
+      if (nu <= -1 || nu > 0.5)
+        r.report.bad_text("E306", *ratio, "Poisson's ratio lies above -1 and is at most 0.5");
+      else if (!modulus)
+        material.shear_modulus = material.youngs_modulus / (2 * (1 + nu));
+    }
+    if (modulus || ratio) return;
+  }
+}
+
+void read_material(Reading& r, const Chain& chain, RodSpec& rod) {
+  const Node* group = part(chain, "material");
+  if (!group) return;
+  MaterialSpec material;
+  material.place = group->place;
+  for (const char* key : {"density", "youngs_modulus"})
+    if (!part(chain, "material", key) && !mentioned({group}, key))
+      r.report.missing("E505", *group,
+                       "<material> of " + describe(*chain.front()) + " has no <" + key + ">");
+  material.density = number_of(part(chain, "material", "density"), 0);
+  material.youngs_modulus = number_of(part(chain, "material", "youngs_modulus"), 0);
+  read_shear_modulus(r, chain, material);
+  rod.material = material;
+}
+
+void read_stiffness(const Chain& chain, RodSpec& rod) {
+  const auto value = [&](const char* key) {
+    const Node* node = part(chain, "stiffness", key);
+    return node ? parse_number(node->text) : std::nullopt;
+  };
+  StiffnessSpec& k = rod.stiffness;
+  k.bending_x = value("bending_x");
+  k.bending_y = value("bending_y");
+  k.torsion = value("torsion");
+  k.axial = value("axial");
+  k.shear_x = value("shear_x");
+  k.shear_y = value("shear_y");
+  if (const Node* group = part(chain, "stiffness")) k.place = group->place;
+}
+
+// what neither measured stiffness nor material gives
+void require_stiffness(Reading& r, const Chain& chain, const RodSpec& rod) {
+  const Node& node = *chain.front();
+  const bool elastic = rod.material && rod.material->youngs_modulus > 0;
+  const bool shears = rod.material && rod.material->shear_modulus > 0;
+  const Scene& scene = r.scene;
+  std::string lacking;
+  const auto need = [&](bool available, const char* name) {
+    if (!available) lacking += std::string(lacking.empty() ? "" : ", ") + name;
+  };
+  need(elastic || rod.stiffness.bending_x, "bending_x");
+  need(elastic || rod.stiffness.bending_y, "bending_y");
+  need(shears || rod.stiffness.torsion, "torsion");
+  if (scene.effects.has(Effect::kExtension)) need(elastic || rod.stiffness.axial, "axial");
+  if (scene.effects.has(Effect::kShear)) {
+    need(shears || rod.stiffness.shear_x, "shear_x");
+    need(shears || rod.stiffness.shear_y, "shear_y");
+  }
+  const bool broken = !rod.material && mentioned(chain, "material");
+  if (lacking.empty() || broken) return;
+  Diagnostic& d =
+      r.report.missing("E505", node, describe(node) + " has no stiffness in " + lacking);
+  d.suggestion = elastic ? "add <shear_modulus> or <poisson_ratio> to its <material>"
+                         : "give a <material>, or these values in <stiffness>";
+}
+
+std::optional<Named> end_frame(Reading& r, const Node& end, int scope) {
+  const Attribute* a = end.attribute("attached_to");
+  if (!a || a->value.empty()) return std::nullopt;
+  const auto found = r.frames.find_outwards(scope, a->value);
+  if (found && found->kind != FrameKind::kRod) return found;
+  const std::size_t colons = a->value.rfind("::");
+  const auto owner = colons == std::string::npos
+                         ? found
+                         : r.frames.find_outwards(scope, a->value.substr(0, colons));
+  if (owner && owner->kind == FrameKind::kRod)
+    r.report.bad_value("E520", end, *a, "a rod attached to a rod is not available in this version",
+                       "available: links and frames; put a light link between them");
+  else
+    r.report.bad_value("E403", end, *a, "there is no link or frame '" + a->value + "'",
+                       mean(nearest_name(a->value, r.frames.known_names(scope))));
+  return std::nullopt;
+}
+
+RodEndSpec read_end(Reading& r, const Node& node, int scope) {
+  RodEndSpec end;
+  end.place = node.place;
+  const std::string_view joint = node.value("joint");
+  if (joint == "fixed") end.joint = EndJoint::kFixed;
+  if (joint == "revolute") end.joint = EndJoint::kRevolute;
+  if (joint == "ball") end.joint = EndJoint::kBall;
+  if (joint == "universal") end.joint = EndJoint::kUniversal;
+  end.spin_free = node.value("spin") == "free";
+  const auto named = end_frame(r, node, scope);
+  if (!named) return end;
+  const Pose X_WE = r.frames.posed(node, scope, named->index);
+  end.at = r.frames.frame_ref(r.frames.body_of(named->index), X_WE);
+  const Node* axis = node.child("axis");
+  if (end.joint == EndJoint::kRevolute && !axis && !mentioned({&node}, "axis"))
+    r.report.missing("E303", node, "a revolute <" + node.name + "> needs an <axis>");
+  if (end.joint != EndJoint::kRevolute && axis)
+    r.report.error("E310", *axis, "only a revolute end has an axis");
+  const Node* xyz = axis ? axis->child("xyz") : nullptr;
+  if (!xyz) return end;
+  end.axis = vec3_of(xyz, end.axis);
+  if (end.axis.norm() < 1e-9) r.report.bad_text("E506", *xyz, "the axis has length 0");
+  if (const Attribute* in = xyz->attribute("expressed_in"); in && !in->value.empty()) {
+    const auto frame = r.frames.find_outwards(scope, in->value);
+    if (!frame || frame->kind == FrameKind::kRod)
+      r.report.bad_value("E403", *xyz, *in, "there is no frame '" + in->value + "'");
+    else
+      end.axis = X_WE.R.transpose() * r.frames.X_W(frame->index).R * end.axis;
+  }
+  end.axis.normalize();
+  return end;
+}
+
+void read_ends(Reading& r, const RodEntry& entry, RodSpec& rod) {
+  const Node* base = entry.node->child("base");
+  const Node* tip = entry.node->child("tip");
+  if (base) rod.base = read_end(r, *base, entry.scope);
+  if (tip) rod.tip = read_end(r, *tip, entry.scope);
+  if (base && base->value("joint") == "free")
+    r.report.bad_value("E520", *base, *base->attribute("joint"),
+                       "a free base is not available in this version",
+                       "available: fixed, revolute, ball, universal");
+}
+
+void read_without(Reading& r, const Chain& chain, RodSpec& rod) {
+  std::vector<std::string> names;
+  for (int k = 0; k < kEffectCount; ++k)
+    names.emplace_back(effect_name(static_cast<Effect>(k)));
+  for (const Node* node : chain)
+    for (const Node* without : node->all("without"))
+      for (const std::string_view word : split_words(without->text)) {
+        if (std::find(names.begin(), names.end(), word) == names.end())
+          r.report.bad_text("E307", *without, "there is no effect '" + std::string(word) + "'",
+                            mean(nearest_name(word, names)));
+        rod.without.emplace_back(word);
+      }
+}
+
+}  // namespace
+
+void read_rods(Reading& r, const Node&) {
+  for (const RodEntry& entry : r.frames.rods()) {
+    RodSpec rod;
+    rod.name = entry.name;
+    rod.place = entry.node->place;
+    rod.length = number_of(entry.node->child("length"), 0);
+    read_ends(r, entry, rod);
+    const Chain chain = inheritance(r, entry);
+    if (!chain.empty()) {
+      read_section(r, chain, rod);
+      read_material(r, chain, rod);
+      read_stiffness(chain, rod);
+      require_stiffness(r, chain, rod);
+      if (const Node* damping = part(chain, "damping")) {
+        const auto value = [&](const char* key) {
+          return number_of(part(chain, "damping", key), 0);
+        };
+        rod.damping = DampingSpec{value("bending"), value("torsion"), value("axial"),
+                                  value("shear"), damping->place};
+      }
+      rod.gravity = flag_of(part(chain, "gravity"), true);
+      read_without(r, chain, rod);
+      if (const Node* visual = part(chain, "visual"))
+        rod.look = read_look(visual->child("material"), {});
+      if (const Node* surface = part(chain, "surface")) {
+        if (r.scene.effects.has(Effect::kContact))
+          r.report.error("E520", *surface, "contact of rods is not available in this version",
+                         "available: contact between rigid bodies; leave out the rod's <surface>");
+        else
+          r.report.note("W511", *surface,
+                        "<surface> of a rod is given, contact is not among the effects");
+      }
+    }
+    r.scene.rods.push_back(std::move(rod));
+  }
+}
+
+}  // namespace cprsim

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Gravity, physics, solver, effects, mode and duration.
+#include <cmath>
+
+#include "scenes/loader/reading.h"
+#include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+double number_of(const Node* node, double fallback) {
+  return node ? parse_number(node->text, true).value_or(fallback) : fallback;
+}
+
+bool flag_of(const Node* node, bool fallback) {
+  return node ? parse_bool(node->text).value_or(fallback) : fallback;
+}
+
+Vec3 vec3_of(const Node* node, const Vec3& fallback) {
+  return node ? parse_vec3(node->text).value_or(fallback) : fallback;
+}
+
+std::optional<double> optional_number(const Node& node, std::string_view key) {
+  const Attribute* a = node.attribute(key);
+  return a ? parse_number(a->value) : std::nullopt;
+}
+
+double number_attribute(const Node& node, std::string_view key, double fallback) {
+  return optional_number(node, key).value_or(fallback);
+}
+
+std::string mean(const std::string& name) {
+  return name.empty() ? name : "did you mean " + name + "?";
+}
+
+namespace {
+
+constexpr int kMostPoints = 10'000;
+constexpr double kMostSteps = 1e8;
+
+const Node* chosen_physics(const Node& world) {
+  const std::vector<const Node*> all = world.all("physics");
+  for (const Node* node : all)
+    if (parse_bool(node->value("default")).value_or(false)) return node;
+  return all.empty() ? nullptr : all.front();
+}
+
+std::optional<int> optional_count(const Node& node, std::string_view key) {
+  const Attribute* a = node.attribute(key);
+  const auto value = a ? parse_integer(a->value) : std::nullopt;
+  return value ? std::optional<int>(static_cast<int>(*value)) : std::nullopt;
+}
+
+template <class Value>
+struct Word {
+  const char* word;
+  Value value;
+};
+
+template <class Value, std::size_t N>
+std::optional<Value> choose(const Word<Value> (&words)[N], std::string_view text) {
+  for (const auto& entry : words)
+    if (entry.word == text) return entry.value;
+  return std::nullopt;
+}
+
+constexpr Word<ArcIntegrator> kIntegrators[] = {{"euler", ArcIntegrator::kEuler},
+                                                {"rk4", ArcIntegrator::kRk4},
+                                                {"gauss2", ArcIntegrator::kGauss2},
+                                                {"gauss4", ArcIntegrator::kGauss4},
+                                                {"gauss6", ArcIntegrator::kGauss6}};
+constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwardEuler},
+                                         {"bdf2", SchemeKind::kBdf2},
+                                         {"bdf_alpha", SchemeKind::kBdfAlpha},
+                                         {"generalized_alpha", SchemeKind::kGeneralizedAlpha},
+                                         {"tr_bdf2", SchemeKind::kTrBdf2},
+                                         {"esdirk32", SchemeKind::kEsdirk32},
+                                         {"esdirk43", SchemeKind::kEsdirk43}};
+
+void read_space(Reading& r, const Node& node) {
+  SolverSpec& solver = r.scene.solver;
+  solver.points = optional_count(node, "points");
+  if (solver.points && *solver.points > kMostPoints)
+    r.report.bad_value("E509", node, *node.attribute("points"), "at most 10000 points per rod");
+  solver.integrator = choose(kIntegrators, node.value("integrator"));
+}
+
+void in_range(Reading& r, const Node& node, const char* key, double low, double high) {
+  const auto value = optional_number(node, key);
+  if (value && (*value < low || *value > high))
+    r.report.bad_value(
+        "E306", node, *node.attribute(key),
+        std::string(key) + " lies between " + format_number(low) + " and " + format_number(high));
+}
+
+// a parameter that the chosen scheme does not have would be dropped silently
+void belongs(Reading& r, const Node& node, const char* key, std::string_view scheme) {
+  if (node.attribute(key) && node.value("scheme") != scheme)
+    r.report.bad_value("E310", node, *node.attribute(key),
+                       std::string(key) + " belongs to " + std::string(scheme) + ", not to " +
+                           std::string(node.value("scheme")));
+}
+
+void read_time(Reading& r, const Node& node) {
+  SolverSpec& solver = r.scene.solver;
+  solver.scheme = choose(kSchemes, node.value("scheme"));
+  in_range(r, node, "alpha", -0.5, 0);
+  in_range(r, node, "rho_inf", 0, 1);
+  in_range(r, node, "tolerance", 1e-12, 0.1);
+  belongs(r, node, "alpha", "bdf_alpha");
+  belongs(r, node, "rho_inf", "generalized_alpha");
+  solver.alpha = optional_number(node, "alpha");
+  solver.rho_inf = optional_number(node, "rho_inf");
+  solver.step = optional_number(node, "step");
+  solver.tolerance = optional_number(node, "tolerance");
+  if (solver.step && solver.tolerance)
+    r.report.error("E310", node, "step fixes the time step, tolerance adapts it: give one of them");
+}
+
+void read_solver(Reading& r, const Node& node) {
+  SolverSpec& solver = r.scene.solver;
+  solver.place = node.place;
+  solver.method = node.value("method") == "shooting" ? Method::kShooting : Method::kAuto;
+  if (const Node* accuracy = node.child("accuracy")) {
+    solver.accuracy = number_of(accuracy, 0);
+    if (*solver.accuracy < 1e-12 || *solver.accuracy > 1)
+      r.report.bad_text("E306", *accuracy, "accuracy lies between 1e-12 and 1 m");
+  }
+  if (const Node* space = node.child("space")) read_space(r, *space);
+  if (const Node* time = node.child("time")) read_time(r, *time);
+  if (const Node* nonlinear = node.child("nonlinear")) {
+    in_range(r, *nonlinear, "tolerance", 1e-14, 1e-2);
+    solver.residual_tolerance = optional_number(*nonlinear, "tolerance");
+    solver.max_iterations = optional_count(*nonlinear, "max_iterations");
+    if (nonlinear->value("algorithm") == "newton") solver.algorithm = NonlinearAlgorithm::kNewton;
+    if (nonlinear->value("algorithm") == "levenberg_marquardt")
+      solver.algorithm = NonlinearAlgorithm::kLevenbergMarquardt;
+  }
+  if (const Node* failure = node.child("on_failure")) {
+    in_range(r, *failure, "retries", 0, 100);
+    solver.halve_on_failure = failure->value("action") != "stop";
+    solver.retries = optional_count(*failure, "retries").value_or(solver.retries);
+  }
+}
+
+void read_effects(Reading& r, const Node& node) {
+  for (const auto& child : node.children)
+    for (int k = 0; k < kEffectCount; ++k) {
+      const auto effect = static_cast<Effect>(k);
+      if (!child->broken && child->name == effect_name(effect))
+        r.scene.effects.set(effect, true, child->place);
+    }
+}
+
+void override_effects(Reading& r) {
+  std::vector<std::string> names;
+  for (int k = 0; k < kEffectCount; ++k)
+    names.emplace_back(effect_name(static_cast<Effect>(k)));
+  const auto apply = [&](const std::vector<std::string>& list, bool on) {
+    const std::string option = on ? "--with " : "--without ";
+    for (const std::string& word : list) {
+      bool known = false;
+      for (int k = 0; k < kEffectCount; ++k) {
+        const auto effect = static_cast<Effect>(k);
+        if (word != effect_name(effect)) continue;
+        known = true;
+        const bool later = effect == Effect::kDrag || effect == Effect::kSelfContact ||
+                           effect == Effect::kTendonFriction;
+        if (later && on)
+          r.report.at(Severity::kError, "E520", {}, 0,
+                      option + word + ": not available in this version");
+        r.scene.effects.set(effect, on, r.scene.effects.asked_at[static_cast<std::size_t>(k)]);
+      }
+      if (known) continue;
+      Diagnostic& d =
+          r.report.at(Severity::kError, "E307", {}, 0, option + word + ": there is no such effect");
+      d.suggestion = mean(nearest_name(word, names));
+    }
+  };
+  apply(r.options.with, true);
+  apply(r.options.without, false);
+}
+
+void read_simulation(Reading& r, const Node& node) {
+  SimulationSpec& simulation = r.scene.simulation;
+  simulation.place = node.place;
+  const std::string_view mode = node.value("mode");
+  simulation.mode = mode == "dynamic"       ? Mode::kDynamic
+                    : mode == "quasistatic" ? Mode::kQuasistatic
+                                            : Mode::kStatic;
+  simulation.duration = number_of(node.child("duration"), 0);
+  if (const Node* seed = node.child("seed"))
+    simulation.seed = static_cast<unsigned>(parse_integer(seed->text).value_or(0));
+  if (const Node* initial = node.child("initial"))
+    simulation.initial_static = initial->value("solve") == "static";
+  if (simulation.mode != Mode::kStatic && simulation.duration <= 0 && !node.broken &&
+      !node.child("duration")) {
+    bool given = false;
+    for (const auto& child : node.children)
+      given = given || child->name == "duration";
+    if (!given)
+      r.report.missing("E507", node, "a " + std::string(mode) + " simulation needs a <duration>");
+  }
+}
+
+void check_step(Reading& r, const Node& where) {
+  const Scene& scene = r.scene;
+  if (scene.simulation.mode == Mode::kStatic || scene.simulation.duration <= 0) return;
+  const double step = scene.solver.step.value_or(scene.max_step_size);
+  if (scene.simulation.duration / step > kMostSteps)
+    r.report.error("E509", where,
+                   "a duration of " + format_number(scene.simulation.duration) + " s in steps of " +
+                       format_number(step) + " s is more than 1e8 steps");
+  if (step > scene.simulation.duration)
+    r.report.warn("W504", where,
+                  "the time step, " + format_number(step) + " s, is longer than the duration, " +
+                      format_number(scene.simulation.duration) + " s");
+}
+
+}  // namespace
+
+void read_settings(Reading& r, const Node& world) {
+  r.scene.name = world.value("name");
+  r.scene.gravity = vec3_of(world.child("gravity"), r.scene.gravity);
+  const Node* physics = chosen_physics(world);
+  if (physics) {
+    r.scene.max_step_size = number_of(physics->child("max_step_size"), r.scene.max_step_size);
+    if (const Node* solver = physics->child("cprsim:solver")) read_solver(r, *solver);
+  }
+  if (const Node* effects = world.child("cprsim:effects")) read_effects(r, *effects);
+  override_effects(r);
+  bool given = false;
+  for (const auto& child : world.children)
+    given = given || child->name == "cprsim:simulation";
+  if (const Node* simulation = world.child("cprsim:simulation"))
+    read_simulation(r, *simulation);
+  else if (!given)
+    r.report.missing(
+        "E507", world,
+        describe(world) + " has no <cprsim:simulation>: static, quasistatic or dynamic?");
+  check_step(r, physics ? *physics : world);
+}
+
+}  // namespace cprsim

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the readers share, and the readers themselves, in the order in which they run. Each fills
+// one part of the Scene from a validated tree; values are valid by then, names and physics are not.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/model/scene.h"
+#include "scenes/loader/frames.h"
+#include "scenes/loader/load.h"
+#include "scenes/loader/reporter.h"
+
+namespace cprsim {
+
+struct Reading {
+  Scene& scene;
+  FrameGraph& frames;
+  Reporter& report;
+  const LoadOptions& options;
+  std::vector<std::string> folders;  ///< of each file, for what it names
+  std::vector<std::string> roots;    ///< below which files may be opened
+  std::map<std::string, Profile, std::less<>> profiles;
+  std::map<int, int> joint_of_vertex;  ///< frame vertex -> Scene::joints
+  std::string expected_failure;
+};
+
+/// Values of validated elements; the fallback if the element is absent or broken.
+double number_of(const Node* node, double fallback);
+bool flag_of(const Node* node, bool fallback);
+Vec3 vec3_of(const Node* node, const Vec3& fallback);
+double number_attribute(const Node& node, std::string_view key, double fallback);
+std::optional<double> optional_number(const Node& node, std::string_view key);
+
+void read_settings(Reading& reading, const Node& world);  // gravity, physics, effects, simulation
+void read_bodies(Reading& reading, const Node& world);    // links
+void read_joints(Reading& reading, const Node& world);    // rigid joints
+void read_rods(Reading& reading, const Node& world);      // rods and their classes
+void read_profiles(Reading& reading, const Node& world);
+void read_actions(Reading& reading, const Node& world);  // drives, loads, initial velocities
+void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings
+void read_outputs(Reading& reading, const Node& world);  // videos, records, expectations, sweeps
+void check_physics(Reading& reading);                    // what only the whole scene can tell
+
+/// Summed shapes of time that are children of `node`.
+Profile read_shapes(Reading& reading, const Node& node);
+
+/// Look of a <material> over a default one.
+Look read_look(const Node* material, Look look);
+
+/// True if nothing can move the body: static, or welded to the world.
+std::vector<bool> fixed_bodies(const Scene& scene);
+
+/// Calls visit(scope, node) for the world and every model.
+template <class Visit>
+void for_each_scope(const Reading& reading, Visit visit) {
+  for (int s = 0; s < static_cast<int>(reading.frames.scopes().size()); ++s)
+    visit(s, *reading.frames.scopes()[static_cast<std::size_t>(s)].node);
+}
+
+/// "did you mean x?" or nothing.
+std::string mean(const std::string& name);
+
+}  // namespace cprsim
