@@ -53,7 +53,7 @@ Vec2 View::to_pixel(const Vec3& p_W) const {
 }
 
 double View::pixel_size(const Vec3& p_W) const {
-  return 2 * tan_half_x * std::max(-to_camera(p_W).z(), near) / width;
+  return 2 * fineness * tan_half_x * std::max(-to_camera(p_W).z(), near) / width;
 }
 
 View make_view(const CameraSpec& camera, const Snapshot& now, double film_time, double scene_size,

@@ -18,6 +18,7 @@ struct View {
   double tan_half_x = 1, tan_half_y = 1;
   double near = 0.01, far = 100;
   int width = 0, height = 0;
+  double fineness = 1;  ///< pixels drawn per pixel of the finished picture, along an edge
 
   Mat4 projection() const;  ///< world → clip coordinates
 
@@ -26,7 +27,7 @@ struct View {
   /// Pixel coordinates, origin at the lower left corner; only for points in front of the eye.
   Vec2 to_pixel(const Vec3& p_W) const;
 
-  /// Size in metres of a pixel at the depth of p_W.
+  /// Size in metres of a pixel of the finished picture at the depth of p_W.
   double pixel_size(const Vec3& p_W) const;
 
   bool operator==(const View&) const = default;

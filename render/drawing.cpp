@@ -125,11 +125,11 @@ std::vector<bool> still_bodies(const Scene& scene) {
   return still;
 }
 
-Look look_of(const BodySpec& body, const VisualSpec& visual) {
+Look look_of(const VisualSpec& visual, bool fixed) {
   if (visual.look.set) return visual.look;
   Look look = visual.look;
-  const double grey = body.is_static ? 0.60 : 0.78;
-  look.diffuse = {grey, grey * 1.01, grey * 1.03};
+  // a dark frame and bright moving parts
+  look.diffuse = fixed ? Vec3(0.30, 0.325, 0.36) : Vec3(0.86, 0.87, 0.88);
   look.specular = Vec3::Constant(0.35);
   look.shininess = 48;
   return look;
@@ -153,7 +153,7 @@ std::vector<Part> make_parts(const Scene& scene) {
       Part part;
       part.body = static_cast<int>(i);
       part.X_BV = visual.X_BV;
-      part.look = look_of(body, visual);
+      part.look = look_of(visual, still[i]);
       part.mesh = make_shape(visual.shape, part.look, scene.meshes);
       part.moves = !still[i];
       part.casts_shadow = visual.cast_shadows;

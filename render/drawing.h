@@ -68,7 +68,7 @@ std::vector<bool> still_bodies(const Scene& scene);
 std::vector<Part> make_parts(const Scene& scene);
 
 /// A pleasant look where the scene gives none.
-Look look_of(const BodySpec& body, const VisualSpec& visual);
+Look look_of(const VisualSpec& visual, bool fixed);
 Look look_of_rod(const RodSpec& rod, std::size_t index);
 
 /// The value a rod point is coloured by: |bending moment|, |curvature|, tension or energy per

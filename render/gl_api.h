@@ -26,7 +26,7 @@ namespace cprsim {
   X(Enable, ENABLE) X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) \
   X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D) X(GenBuffers, GENBUFFERS) \
   X(GenFramebuffers, GENFRAMEBUFFERS) X(GenSamplers, GENSAMPLERS) X(GenTextures, GENTEXTURES) \
-  X(GenVertexArrays, GENVERTEXARRAYS) X(GetError, GETERROR) X(GetIntegerv, GETINTEGERV) \
+  X(GenVertexArrays, GENVERTEXARRAYS) X(GenerateMipmap, GENERATEMIPMAP) X(GetError, GETERROR) X(GetIntegerv, GETINTEGERV) \
   X(GetProgramInfoLog, GETPROGRAMINFOLOG) X(GetProgramiv, GETPROGRAMIV) \
   X(GetShaderInfoLog, GETSHADERINFOLOG) X(GetShaderiv, GETSHADERIV) X(GetString, GETSTRING) \
   X(GetUniformLocation, GETUNIFORMLOCATION) X(LinkProgram, LINKPROGRAM) \

@@ -2,6 +2,7 @@
 #include "render/gl_painter.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/shaders/shaders.h"
 #include "render/sweep.h"
@@ -12,13 +13,13 @@ namespace {
 
 constexpr int kSamples = 4;  // all that Mesa's software renderer offers
 constexpr double kShadowSoftness =
-    0.022;  // widest half shadow, as a fraction of the shadow map's edge
+    0.02;  // widest half shadow, as a fraction of the shadow map's edge
 constexpr double kShadowOffsetTexels =
     1.6;  // below 1.2 round rods show stripes of their own shadow
 
 // texture units
-constexpr GLuint kObjects = 0, kStillMap = 1, kStillDepth = 2, kMovingMap = 3, kMovingDepth = 4,
-                 kFirst = 5, kSecond = 6, kThird = 7;
+constexpr GLuint kObjects = 0, kShadowMap = 1, kShadowCover = 2, kFirst = 3, kSecond = 4,
+                 kThird = 5;
 
 std::string fragment(const char* source, const char* define = "") {
   return std::string(shaders::kVersion) + define + shaders::kLighting + source;
@@ -27,45 +28,51 @@ std::string fragment(const char* source, const char* define = "") {
 }  // namespace
 
 struct GlPainter::Textures {
-  Textures(const Gl& gl, int w, int h, int shadow)
+  /// What the key light sees: depths, and how much of a texel is covered, at what depth.
+  struct Shadow {
+    Shadow(const Gl& gl, int size)
+        : depth(make_texture(gl, GL_DEPTH_COMPONENT16, size, size, 1)),
+          cover(make_texture(gl, GL_RG16, size, size, 1)),
+          target(make_target(gl, {cover}, depth, 1)) {}
+
+    GlName depth, cover, target;
+  };
+
+  Textures(const Gl& gl, int w, int h, int shadow_size)
       : object_color(make_texture(gl, GL_RGBA8, w, h, kSamples)),
         object_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, kSamples)),
         kept_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, kSamples)),
-        layer(make_texture(gl, GL_RGBA8, w, h, 1)),
-        layer_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, 1)),
         picture(make_texture(gl, GL_RGBA8, w, h, 1)),
         in_light(make_texture(gl, GL_RGBA8, w, h, 1)),
         in_shade(make_texture(gl, GL_RGBA8, w, h, 1)),
         range(make_texture(gl, GL_R32F, w, h, 1)),
-        still_shadow(make_texture(gl, GL_DEPTH_COMPONENT16, shadow, shadow, 1)),
-        moving_shadow(make_texture(gl, GL_DEPTH_COMPONENT16, shadow, shadow, 1)),
         to_objects(make_target(gl, {object_color}, object_depth, kSamples)),
         to_kept_depth(make_target(gl, {}, kept_depth, kSamples)),
-        to_layer(make_target(gl, {layer}, layer_depth, 1)),
         to_picture(make_target(gl, {picture}, 0, 1)),
         to_in_light(make_target(gl, {in_light, range}, 0, 1)),
         to_in_shade(make_target(gl, {in_shade}, 0, 1)),
-        to_still_shadow(make_target(gl, {}, still_shadow, 1)),
-        to_moving_shadow(make_target(gl, {}, moving_shadow, 1)),
+        to_range(make_target(gl, {range}, 0, 1)),
+        still(gl, shadow_size),
+        moving(gl, shadow_size),
         compare(gl, GlName::Kind::kSampler),
-        plain(gl, GlName::Kind::kSampler) {
-    for (GLuint sampler : {GLuint(compare), GLuint(plain)}) {
+        levels(gl, GlName::Kind::kSampler) {
+    for (GLuint sampler : {GLuint(compare), GLuint(levels)}) {
       gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
       gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     }
     for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
       gl.SamplerParameteri(compare, filter, GL_LINEAR);
-      gl.SamplerParameteri(plain, filter, GL_NEAREST);
+      gl.SamplerParameteri(levels, filter, GL_LINEAR);
     }
+    gl.SamplerParameteri(levels, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   }
 
-  GlName object_color, object_depth, kept_depth, layer, layer_depth, picture, in_light, in_shade,
-      range, still_shadow, moving_shadow;
-  GlName to_objects, to_kept_depth, to_layer, to_picture, to_in_light, to_in_shade, to_still_shadow,
-      to_moving_shadow;
-  GlName compare, plain;
+  GlName object_color, object_depth, kept_depth, picture, in_light, in_shade, range;
+  GlName to_objects, to_kept_depth, to_picture, to_in_light, to_in_shade, to_range;
+  Shadow still, moving;
+  GlName compare, levels;
 };
 
 GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
@@ -77,8 +84,9 @@ GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
       parts_(parts),
       textures_(std::make_unique<Textures>(gl, width, height, shadow_size)),
       tubes_(gl),
+      tube_shadows_(gl),
       ribbons_(gl),
-      nothing_(gl, GlName::Kind::kVertexArray) {
+      tiles_(gl) {
   const std::string version = shaders::kVersion;
   const std::string whole = version + shaders::kSceneVertex;
   objects_ = std::make_unique<Program>(gl, version + shaders::kObjectVertex,
@@ -98,55 +106,72 @@ GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
 
 GlPainter::~GlPainter() = default;
 
-double GlPainter::softness(const Ball& shadow_ball) const {
-  return 2 * shadow_ball.radius * (kShadowSoftness + 3.0 / shadow_size_);
+double GlPainter::softness() {
+  return kShadowSoftness;
+}
+
+Mat4 GlPainter::light_clip(const Frame& frame) const {
+  return light_projection(-frame.light.to_key, frame.shadow_ball.centre, frame.shadow_ball.radius);
 }
 
 void GlPainter::paint(const Frame& frame) {
-  const Region whole{0, 0, width_, height_};
+  const Shine shine{true, frame.light.shadows, Which::kAll};
   upload_sweeps(frame);
-  if (frame.light.shadows) draw_shadows(frame, Which::kAll, textures_->to_moving_shadow);
-  draw_objects(frame, Which::kAll, whole, true, false, frame.light.shadows);
-  resolve(whole);
-  limit(whole);
-  compose(*direct_, frame, textures_->to_picture, true, false, frame.light.shadows);
+  upload_tiles({{whole(), true, true}});
+  if (frame.light.shadows) draw_shadows(frame, Which::kAll);
+  draw_objects(frame, Which::kAll, whole(), shine);
+  compose(*direct_, frame, textures_->to_picture, shine);
 }
 
 void GlPainter::store_still(const Frame& frame) {
-  const Region whole{0, 0, width_, height_};
-  const bool shadows = frame.light.shadows;
-  if (shadows) draw_shadows(frame, Which::kStill, textures_->to_still_shadow);
-  draw_objects(frame, Which::kStill, whole, true, shadows, false);
-  resolve(whole);
+  const Shine shine{true, frame.light.shadows, Which::kStill}, shade{false, false, Which::kStill};
+  upload_tiles({{whole(), true, true}});
+  if (frame.light.shadows) draw_shadows(frame, Which::kStill);
+  draw_objects(frame, Which::kStill, whole(), shine);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_objects);
-  for (GLuint target : {GLuint(textures_->to_kept_depth), GLuint(textures_->to_layer)}) {
-    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
-    gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT,
-                        GL_NEAREST);
-  }
-  limit(whole);
-  compose(*ranged_, frame, textures_->to_in_light, true, shadows, false);
-  draw_objects(frame, Which::kStill, whole, false, false, false);
-  resolve(whole);
-  limit(whole);
-  compose(*direct_, frame, textures_->to_in_shade, false, false, false);
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, textures_->to_kept_depth);
+  gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT,
+                      GL_NEAREST);
+  compose(*ranged_, frame, textures_->to_in_light, shine);
+  draw_objects(frame, Which::kStill, whole(), shade);
+  compose(*direct_, frame, textures_->to_in_shade, shade);
 }
 
-void GlPainter::paint_moving(const Frame& frame, const Region& region) {
-  if (region.empty()) return;
+void GlPainter::paint_moving(const Frame& frame, const Changes& changes) {
+  if (changes.runs.empty()) return;
+  const Shine shine{true, frame.light.shadows, Which::kMoving};
   upload_sweeps(frame);
-  if (frame.light.shadows) draw_shadows(frame, Which::kMoving, textures_->to_moving_shadow);
-  draw_objects(frame, Which::kMoving, region, true, frame.light.shadows, frame.light.shadows);
-  resolve(region);
-  limit(region);
-  compose(*cached_, frame, textures_->to_picture, true, false, frame.light.shadows);
+  upload_tiles(changes.runs);
+  if (frame.light.shadows) draw_shadows(frame, Which::kMoving);
+  if (!changes.objects.empty()) draw_objects(frame, Which::kMoving, changes.objects, shine);
+  compose(*cached_, frame, textures_->to_picture, shine);
+}
+
+void GlPainter::upload_tiles(const std::vector<TileRun>& runs) {
+  TriMesh mesh;
+  for (const TileRun& run : runs) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Region& r = run.region;
+    for (const auto& [x, y] : {std::pair{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}) {
+      const Vec3 clip(2.0 * x / width_ - 1, 2.0 * y / height_ - 1, 0);
+      mesh.vertices.push_back(
+          {clip.cast<float>(), Eigen::Vector3f::Zero(),
+           to_bytes({run.objects ? 1.0F : 0.0F, run.shadow ? 1.0F : 0.0F, 0}, 1)});
+    }
+    mesh.indices.insert(mesh.indices.end(),
+                        {first, first + 1, first + 2, first, first + 2, first + 3});
+  }
+  tiles_.upload(mesh);
 }
 
 void GlPainter::upload_sweeps(const Frame& frame) {
-  TriMesh mesh;
-  for (const Tube& tube : frame.drawing.tubes)
+  TriMesh mesh, shadows;
+  for (const Tube& tube : frame.drawing.tubes) {
     sweep_tube(tube, frame.view, mesh);
+    sweep_shadow(tube, frame.light.to_key, shadows);
+  }
   tubes_.upload(mesh);
+  tube_shadows_.upload(shadows);
   mesh = {};
   for (const Ribbon& ribbon : frame.drawing.ribbons)
     sweep_ribbon(ribbon, frame.view, mesh);
@@ -160,19 +185,29 @@ bool GlPainter::drawn(std::size_t part, Which which) const {
   return which == Which::kAll || (which == Which::kMoving) == moving;
 }
 
-void GlPainter::draw_shadows(const Frame& frame, Which which, GLuint target) {
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-  gl_.Viewport(0, 0, shadow_size_, shadow_size_);
+void GlPainter::draw_shadows(const Frame& frame, Which which) {
+  const bool on_top = which == Which::kMoving;
+  const Textures::Shadow& shadow = which == Which::kStill ? textures_->still : textures_->moving;
   gl_.Disable(GL_SCISSOR_TEST);
+  if (on_top) {
+    // depths of what stands still, but not its cover: that is in the stored picture
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->still.target);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, shadow.target);
+    gl_.BlitFramebuffer(0, 0, shadow_size_, shadow_size_, 0, 0, shadow_size_, shadow_size_,
+                        GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  }
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, shadow.target);
+  gl_.Viewport(0, 0, shadow_size_, shadow_size_);
   gl_.Disable(GL_BLEND);
+  gl_.Disable(GL_CULL_FACE);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthMask(GL_TRUE);
-  gl_.Clear(GL_DEPTH_BUFFER_BIT);
+  gl_.ClearColor(0, 0, 0, 0);
+  gl_.Clear(on_top ? GL_COLOR_BUFFER_BIT : GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl_.Enable(GL_POLYGON_OFFSET_FILL);
   gl_.PolygonOffset(1.5F, 2.0F);
   shadows_->use();
-  shadows_->set("clip_from_world", light_projection(-frame.light.to_key, frame.shadow_ball.centre,
-                                                    frame.shadow_ball.radius));
+  shadows_->set("clip_from_world", light_clip(frame));
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (!drawn(i, which) || !parts_[i].casts_shadow || parts_[i].look.opacity < 0.5) continue;
     shadows_->set("world_from_object", to_matrix(frame.drawing.part_poses[i]));
@@ -180,9 +215,12 @@ void GlPainter::draw_shadows(const Frame& frame, Which which, GLuint target) {
   }
   if (which != Which::kStill) {
     shadows_->set("world_from_object", Mat4(Mat4::Identity()));
-    tubes_.draw();
+    tube_shadows_.draw();
   }
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
+  gl_.ActiveTexture(GL_TEXTURE0);
+  gl_.BindTexture(GL_TEXTURE_2D, shadow.cover);
+  gl_.GenerateMipmap(GL_TEXTURE_2D);
 }
 
 void GlPainter::draw_part(const Frame& frame, std::size_t i) const {
@@ -194,8 +232,8 @@ void GlPainter::draw_part(const Frame& frame, std::size_t i) const {
   geometries_[i].draw();
 }
 
-void GlPainter::draw_objects(const Frame& frame, Which which, const Region& region, bool key_light,
-                             bool still_shadow, bool moving_shadow) {
+void GlPainter::draw_objects(const Frame& frame, Which which, const Region& region,
+                             const Shine& shine) {
   limit(region);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthMask(GL_TRUE);
@@ -213,7 +251,7 @@ void GlPainter::draw_objects(const Frame& frame, Which which, const Region& regi
   const bool cut = frame.backdrop.ground && frame.view.eye.z() > frame.backdrop.ground_z;
   if (cut) gl_.Enable(GL_CLIP_DISTANCE0);
   objects_->use();
-  set_lighting(*objects_, frame, key_light, still_shadow, moving_shadow);
+  set_lighting(*objects_, frame, shine);
   objects_->set("clip_from_world", frame.view.projection());
   objects_->set("cut", Vec4(0, 0, 1, -frame.backdrop.ground_z));
   objects_->set("unlit", 0.0);
@@ -230,7 +268,9 @@ void GlPainter::draw_sweeps_and_glass(const Frame& frame, Which which) {
   objects_->set("specular", look.specular);
   objects_->set("emissive", look.emissive);
   objects_->set("shininess", std::clamp(look.shininess, 1.0, 200.0));
+  gl_.Enable(GL_CULL_FACE);
   tubes_.draw();
+  gl_.Disable(GL_CULL_FACE);
 
   gl_.Enable(GL_BLEND);
   gl_.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -251,22 +291,35 @@ void GlPainter::draw_sweeps_and_glass(const Frame& frame, Which which) {
   gl_.Disable(GL_BLEND);
 }
 
-void GlPainter::resolve(const Region& r) const {
-  gl_.Disable(GL_SCISSOR_TEST);
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_objects);
-  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, textures_->to_layer);
-  gl_.BlitFramebuffer(r.x0, r.y0, r.x1, r.y1, r.x0, r.y0, r.x1, r.y1, GL_COLOR_BUFFER_BIT,
-                      GL_NEAREST);
-}
-
-void GlPainter::compose(const Program& program, const Frame& frame, GLuint target, bool key_light,
-                        bool still_shadow, bool moving_shadow) const {
-  const View& view = frame.view;
-  const Backdrop& backdrop = frame.backdrop;
+void GlPainter::compose(const Program& program, const Frame& frame, GLuint target,
+                        const Shine& shine) {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+  limit(whole());
   gl_.Disable(GL_DEPTH_TEST);
   program.use();
-  set_lighting(program, frame, key_light, still_shadow, moving_shadow);
+  set_lighting(program, frame, shine);
+  set_backdrop(program, frame);
+  program.set("objects", static_cast<int>(kObjects));
+  bind(kObjects, GL_TEXTURE_2D_MULTISAMPLE, textures_->object_color);
+  if (&program == ranged_.get()) {
+    program.set("object_depth", static_cast<int>(kFirst));
+    bind(kFirst, GL_TEXTURE_2D_MULTISAMPLE, textures_->object_depth);
+  }
+  if (&program == cached_.get()) {
+    program.set("in_light", static_cast<int>(kFirst));
+    program.set("in_shade", static_cast<int>(kSecond));
+    program.set("range", static_cast<int>(kThird));
+    bind(kFirst, GL_TEXTURE_2D, textures_->in_light);
+    bind(kSecond, GL_TEXTURE_2D, textures_->in_shade);
+    bind(kThird, GL_TEXTURE_2D, textures_->range);
+  }
+  tiles_.draw();
+  gl_.Disable(GL_SCISSOR_TEST);
+}
+
+void GlPainter::set_backdrop(const Program& program, const Frame& frame) const {
+  const View& view = frame.view;
+  const Backdrop& backdrop = frame.backdrop;
   // a ray's length is its depth
   program.set("ray_centre", Vec3(-view.R_WC.col(2)));
   program.set("ray_right", Vec3(view.tan_half_x * view.R_WC.col(0)));
@@ -281,33 +334,16 @@ void GlPainter::compose(const Program& program, const Frame& frame, GLuint targe
   program.set("cell", backdrop.cell);
   program.set("fade_from", backdrop.fade_from);
   program.set("fade_to", backdrop.fade_to);
+  program.set("line_width", view.fineness);
   program.set("depth_terms", Vec2(view.far * view.near / (view.far - view.near),
                                   view.far / (view.far - view.near)));
-  program.set("objects", static_cast<int>(kObjects));
-  bind(kObjects, textures_->layer);
-  if (&program == ranged_.get()) {
-    program.set("object_depth", static_cast<int>(kFirst));
-    bind(kFirst, textures_->layer_depth);
-  }
-  if (&program == cached_.get()) {
-    program.set("in_light", static_cast<int>(kFirst));
-    program.set("in_shade", static_cast<int>(kSecond));
-    program.set("range", static_cast<int>(kThird));
-    bind(kFirst, textures_->in_light);
-    bind(kSecond, textures_->in_shade);
-    bind(kThird, textures_->range);
-  }
-  gl_.BindVertexArray(nothing_);
-  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_.Disable(GL_SCISSOR_TEST);
 }
 
-void GlPainter::set_lighting(const Program& program, const Frame& frame, bool key_light,
-                             bool still_shadow, bool moving_shadow) const {
+void GlPainter::set_lighting(const Program& program, const Frame& frame, const Shine& shine) const {
   const Lighting& light = frame.light;
   program.set("eye", frame.view.eye);
   program.set("to_key", light.to_key);
-  program.set("key_color", key_light ? light.key_color : Vec3(Vec3::Zero()));
+  program.set("key_color", shine.key ? light.key_color : Vec3(Vec3::Zero()));
   program.set("ambient_up", light.ambient_up);
   program.set("ambient_down", light.ambient_down);
   std::vector<Vec4> places, axes;
@@ -321,27 +357,24 @@ void GlPainter::set_lighting(const Program& program, const Frame& frame, bool ke
   program.set("light_place", places);
   program.set("light_axis", axes);
   program.set("light_color", colors);
-  program.set("light_clip",
-              light_projection(-light.to_key, frame.shadow_ball.centre, frame.shadow_ball.radius));
+  program.set("light_clip", light_clip(frame));
   const double texel = 1.0 / shadow_size_;
   program.set("shadow_texel", texel);
   program.set("shadow_softness", kShadowSoftness);
+  program.set("shadow_search", std::log2(kShadowSoftness * shadow_size_));
   program.set("shadow_normal_offset", kShadowOffsetTexels * texel * 2 * frame.shadow_ball.radius);
-  program.set("still_shadow", still_shadow ? 1.0 : 0.0);
-  program.set("moving_shadow", moving_shadow ? 1.0 : 0.0);
-  program.set("still_map", static_cast<int>(kStillMap));
-  program.set("still_depth", static_cast<int>(kStillDepth));
-  program.set("moving_map", static_cast<int>(kMovingMap));
-  program.set("moving_depth", static_cast<int>(kMovingDepth));
-  bind(kStillMap, textures_->still_shadow, textures_->compare);
-  bind(kStillDepth, textures_->still_shadow, textures_->plain);
-  bind(kMovingMap, textures_->moving_shadow, textures_->compare);
-  bind(kMovingDepth, textures_->moving_shadow, textures_->plain);
+  program.set("shadowed", shine.shadows ? 1.0 : 0.0);
+  program.set("shadow_map", static_cast<int>(kShadowMap));
+  program.set("shadow_cover", static_cast<int>(kShadowCover));
+  const bool still = shine.casters == Which::kStill;
+  const Textures::Shadow& shadow = still ? textures_->still : textures_->moving;
+  bind(kShadowMap, GL_TEXTURE_2D, shadow.depth, textures_->compare);
+  bind(kShadowCover, GL_TEXTURE_2D, shadow.cover, textures_->levels);
 }
 
-void GlPainter::bind(GLuint unit, GLuint texture, GLuint sampler) const {
+void GlPainter::bind(GLuint unit, GLenum kind, GLuint texture, GLuint sampler) const {
   gl_.ActiveTexture(GL_TEXTURE0 + unit);
-  gl_.BindTexture(GL_TEXTURE_2D, texture);
+  gl_.BindTexture(kind, texture);
   gl_.BindSampler(unit, sampler);
 }
 
@@ -351,19 +384,20 @@ void GlPainter::limit(const Region& r) const {
   gl_.Scissor(r.x0, r.y0, r.width(), r.height());
 }
 
-void GlPainter::read_from(GLuint target, const Region& r, std::vector<std::uint8_t>& pixels) const {
+void GlPainter::read(const Region& r, std::vector<std::uint8_t>& pixels) const {
   pixels.resize(4 * static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target);
-  gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_picture);
   gl_.ReadPixels(r.x0, r.y0, r.width(), r.height(), GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
 }
 
-void GlPainter::read(const Region& region, std::vector<std::uint8_t>& pixels) const {
-  read_from(textures_->to_picture, region, pixels);
-}
-
-void GlPainter::read_still(std::vector<std::uint8_t>& pixels) const {
-  read_from(textures_->to_in_light, {0, 0, width_, height_}, pixels);
+void GlPainter::read_still(std::vector<std::uint8_t>& pixels, std::vector<float>& range) const {
+  const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  pixels.resize(4 * count);
+  range.resize(count);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_in_light);
+  gl_.ReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_range);
+  gl_.ReadPixels(0, 0, width_, height_, GL_RED, GL_FLOAT, range.data());
 }
 
 }  // namespace cprsim

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "render/gl_objects.h"
-#include "render/region.h"
+#include "render/scenery.h"
+#include "render/tiles.h"
 
 namespace cprsim {
 
@@ -35,37 +36,45 @@ class GlPainter {
   /// Draws what does not move, for paint_moving() with the same view, light and backdrop.
   void store_still(const Frame& frame);
 
-  /// The picture inside the region, on what store_still() has kept.
-  void paint_moving(const Frame& frame, const Region& region);
-
-  /// Metres by which the widest shadow exceeds what throws it.
-  double softness(const Ball& shadow_ball) const;
+  /// The changing tiles of the picture, on what store_still() has kept.
+  void paint_moving(const Frame& frame, const Changes& changes);
 
   /// @param pixels  RGBA, 4 × width × height of the region, rows from the bottom
   void read(const Region& region, std::vector<std::uint8_t>& pixels) const;
 
-  /// Likewise the whole of what store_still() has kept, in the light.
-  void read_still(std::vector<std::uint8_t>& pixels) const;
+  /// Likewise the whole of what store_still() has kept, in the light, and the depth of its pixels.
+  void read_still(std::vector<std::uint8_t>& pixels, std::vector<float>& range) const;
+
+  Mat4 light_clip(const Frame& frame) const;
+
+  /// Widest half shadow, as a fraction of the shadow map's edge.
+  static double softness();
 
  private:
   enum class Which { kStill, kMoving, kAll };
+
+  /// With which light a pass is drawn: the key light may be out, and its shadows left away.
+  struct Shine {
+    bool key = true, shadows = true;
+    Which casters = Which::kAll;
+  };
+
   struct Textures;
 
-  void draw_shadows(const Frame& frame, Which which, GLuint target);
-  void draw_objects(const Frame& frame, Which which, const Region& region, bool key_light,
-                    bool still_shadow, bool moving_shadow);
+  void draw_shadows(const Frame& frame, Which which);
+  void draw_objects(const Frame& frame, Which which, const Region& region, const Shine& shine);
   void draw_sweeps_and_glass(const Frame& frame, Which which);
   void draw_part(const Frame& frame, std::size_t i) const;
-  void resolve(const Region& region) const;
-  void compose(const Program& program, const Frame& frame, GLuint target, bool key_light,
-               bool still_shadow, bool moving_shadow) const;
+  void compose(const Program& program, const Frame& frame, GLuint target, const Shine& shine);
   void upload_sweeps(const Frame& frame);
-  void read_from(GLuint target, const Region& region, std::vector<std::uint8_t>& pixels) const;
-  void set_lighting(const Program& program, const Frame& frame, bool key_light, bool still_shadow,
-                    bool moving_shadow) const;
-  void bind(GLuint unit, GLuint texture, GLuint sampler = 0) const;
+  void upload_tiles(const std::vector<TileRun>& runs);
+  void set_backdrop(const Program& program, const Frame& frame) const;
+  void set_lighting(const Program& program, const Frame& frame, const Shine& shine) const;
+  void bind(GLuint unit, GLenum kind, GLuint texture, GLuint sampler = 0) const;
   void limit(const Region& region) const;
   bool drawn(std::size_t part, Which which) const;
+
+  Region whole() const { return {0, 0, width_, height_}; }
 
   const Gl& gl_;
   int width_, height_, shadow_size_;
@@ -73,8 +82,7 @@ class GlPainter {
   std::unique_ptr<Program> objects_, shadows_, direct_, ranged_, cached_;
   std::unique_ptr<Textures> textures_;
   std::vector<Geometry> geometries_;
-  Geometry tubes_, ribbons_;
-  GlName nothing_;  ///< the vertex array of the pass that has no vertices
+  Geometry tubes_, tube_shadows_, ribbons_, tiles_;
 };
 
 }  // namespace cprsim

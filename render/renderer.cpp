@@ -11,8 +11,8 @@
 #include "render/egl_context.h"
 #include "render/gl_painter.h"
 #include "render/overlay.h"
-#include "render/region.h"
 #include "render/scenery.h"
+#include "render/tiles.h"
 
 namespace cprsim {
 
@@ -32,12 +32,14 @@ bool rests(const CameraSpec& camera, const std::vector<bool>& still) {
   return body < still.size() && still[body];
 }
 
-/// Puts rows that come from the bottom into their place in the picture.
-void put(Image& image, const Region& region, const std::vector<std::uint8_t>& rows) {
-  const std::size_t row = 4 * static_cast<std::size_t>(region.width());
-  for (int y = region.y0; y < region.y1; ++y) {
-    std::memcpy(image.at(region.x0, image.height - 1 - y),
-                rows.data() + row * static_cast<std::size_t>(y - region.y0), row);
+/// Puts a part of the picture in its place; `rows` come from the bottom and fill the region `from`.
+void put(Image& image, const Region& part, const Region& from,
+         const std::vector<std::uint8_t>& rows) {
+  const auto bytes = [](int pixels) { return 4 * static_cast<std::size_t>(pixels); };
+  for (int y = part.y0; y < part.y1; ++y) {
+    std::memcpy(image.at(part.x0, image.height - 1 - y),
+                rows.data() + bytes((y - from.y0) * from.width() + part.x0 - from.x0),
+                bytes(part.width()));
   }
 }
 
@@ -56,6 +58,7 @@ struct Renderer::Parts {
   void grow_shadow_ball(const Ball& bounds);
   Image draw_anew(const Frame& frame);
   Image draw_moving(const Frame& frame);
+  void store(const Frame& frame);
   bool is_stored(const Frame& frame) const;
 
   const Scene& scene;
@@ -73,8 +76,8 @@ struct Renderer::Parts {
   Backdrop backdrop;
   Ball shadow_ball;
 
-  // what store_still() was last called with
-  bool stored = false;
+  // what store() was last called with
+  std::unique_ptr<TileMap> tiles;
   View stored_view;
   Lighting stored_light;
   Ball stored_ball;
@@ -88,7 +91,7 @@ void Renderer::Parts::settle(const Drawing& drawing) {
   bounds = bounds_of(visuals, drawing);
   const double ground = ground_height(scene, visuals, drawing);
   backdrop = make_backdrop(scene, bounds, ground);
-  shadow_ball = {bounds.centre, 1.25 * bounds.radius};
+  shadow_ball = {bounds.centre, 1.1 * bounds.radius};
   overlay = std::make_unique<Overlay>(has_light_background(backdrop));
   settled = true;
 }
@@ -96,12 +99,12 @@ void Renderer::Parts::settle(const Drawing& drawing) {
 void Renderer::Parts::grow_shadow_ball(const Ball& now) {
   const double needed = (now.centre - shadow_ball.centre).norm() + now.radius;
   // in large steps: every growth changes the grain of the shadows a little
-  while (needed > 1.1 * shadow_ball.radius && std::isfinite(needed))
+  while (needed > 1.05 * shadow_ball.radius && std::isfinite(needed))
     shadow_ball.radius *= 1.4;
 }
 
 bool Renderer::Parts::is_stored(const Frame& frame) const {
-  if (!stored || !(frame.view == stored_view) || !(frame.light == stored_light)) return false;
+  if (!tiles || !(frame.view == stored_view) || !(frame.light == stored_light)) return false;
   if (frame.shadow_ball.radius != stored_ball.radius) return false;
   for (std::size_t i = 0; i < visuals.size(); ++i) {
     const Pose &a = frame.drawing.part_poses[i], &b = stored_poses[i];
@@ -116,30 +119,33 @@ Image Renderer::Parts::draw_anew(const Frame& frame) {
   const Region whole{0, 0, frame.view.width, frame.view.height};
   painter->read(whole, rows);
   Image image(whole.width(), whole.height());
-  put(image, whole, rows);
+  put(image, whole, whole, rows);
   return image;
 }
 
+void Renderer::Parts::store(const Frame& frame) {
+  painter->store_still(frame);
+  const Region whole{0, 0, frame.view.width, frame.view.height};
+  std::vector<float> range;
+  painter->read_still(rows, range);
+  still_picture = Image(whole.width(), whole.height());
+  put(still_picture, whole, whole, rows);
+  tiles = std::make_unique<TileMap>(frame.view, range, painter->light_clip(frame));
+  stored_view = frame.view;
+  stored_light = frame.light;
+  stored_ball = frame.shadow_ball;
+  stored_poses = frame.drawing.part_poses;
+}
+
 Image Renderer::Parts::draw_moving(const Frame& frame) {
-  if (!is_stored(frame)) {
-    painter->store_still(frame);
-    stored = true;
-    stored_view = frame.view;
-    stored_light = frame.light;
-    stored_ball = frame.shadow_ball;
-    stored_poses = frame.drawing.part_poses;
-    const Region whole{0, 0, frame.view.width, frame.view.height};
-    painter->read_still(rows);
-    still_picture = Image(whole.width(), whole.height());
-    put(still_picture, whole, rows);
-  }
-  const Region region = moving_region(visuals, frame.drawing, frame.view, frame.light,
-                                      frame.backdrop, painter->softness(frame.shadow_ball));
+  if (!is_stored(frame)) store(frame);
+  const Changes changes = tiles->changes(visuals, frame.drawing, GlPainter::softness());
   Image image = still_picture;
-  if (region.empty()) return image;
-  painter->paint_moving(frame, region);
-  painter->read(region, rows);
-  put(image, region, rows);
+  if (changes.runs.empty()) return image;
+  painter->paint_moving(frame, changes);
+  painter->read(changes.all, rows);
+  for (const TileRun& run : changes.runs)
+    put(image, run.region, changes.all, rows);
   return image;
 }
 
@@ -180,9 +186,10 @@ Image Renderer::draw(const Snapshot& now, const CameraSpec& camera, const FrameD
   if (!parts.settled) parts.settle(drawing);
   parts.grow_shadow_ball(bounds_of(parts.visuals, drawing));
   const int finer = parts.options.supersample;
-  const Frame frame{make_view(camera, now, decor.film_time, 4 * parts.bounds.radius,
-                              parts.width * finer, parts.height * finer),
-                    drawing, make_lighting(parts.scene, now, parts.bounds), parts.backdrop,
+  View view = make_view(camera, now, decor.film_time, 4 * parts.bounds.radius, parts.width * finer,
+                        parts.height * finer);
+  view.fineness = finer;
+  const Frame frame{view, drawing, make_lighting(parts.scene, now, parts.bounds), parts.backdrop,
                     parts.shadow_ball};
   Image image =
       rests(camera, parts.still) && finer == 1 ? parts.draw_moving(frame) : parts.draw_anew(frame);

@@ -19,7 +19,7 @@ struct RenderOptions {
   /// Pixels are drawn as supersample × supersample finer ones and averaged (1 or 2), on top of
   /// 4 samples a pixel. A film takes 1, a still 2.
   int supersample = 1;
-  int shadow_size = 1024;  ///< edge of the shadow map in texels
+  int shadow_size = 512;  ///< edge of the shadow map in texels
 };
 
 /// The path a point has drawn, oldest first.

@@ -77,15 +77,45 @@ void add_cap(const std::vector<OutlinePoint>& outline, std::size_t rim, const Tu
   }
 }
 
-}  // namespace
-
-void sweep_tube(const Tube& tube, const View& view, TriMesh& mesh) {
-  if (tube.rings.size() < 2) return;
-  double finest = view.pixel_size(tube.rings.front().position);
+/// Half of a rod's round, the half that is seen, in as few faces as a thin rod needs: its edge is
+/// exact and its shading that of the round, because the normals are.
+void sweep_front(const Tube& tube, const View& view, int faces, TriMesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto n = static_cast<std::uint32_t>(faces) + 1;
   for (const Tube::Ring& ring : tube.rings) {
-    finest = std::min(finest, view.pixel_size(ring.position));
+    const Vec3 to_eye = view.eye - ring.position;
+    const Vec3 side = to_eye.cross(ring.rotation.col(2)).normalized();
+    const Vec3 front = ring.rotation.col(2).cross(side);
+    const double r = std::max(tube.radius, 0.5 * kSmallestWidth * view.pixel_size(ring.position));
+    const auto color = to_bytes(ring.color, tube.look.opacity);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const double a = kPi * k / faces;
+      const Vec3 normal = std::cos(a) * side + std::sin(a) * front;
+      mesh.vertices.push_back(
+          {(ring.position + r * normal).cast<float>(), normal.cast<float>(), color});
+    }
   }
-  const std::vector<OutlinePoint> outline = outline_of(tube, tube.radius / finest);
+  for (std::uint32_t i = 0; i + 1 < tube.rings.size(); ++i) {
+    for (std::uint32_t k = 0; k + 1 < n; ++k) {
+      const std::uint32_t a = first + i * n + k, b = a + n;
+      mesh.indices.insert(mesh.indices.end(), {a, a + 1, b + 1, a, b + 1, b});
+    }
+  }
+}
+
+/// Is the rod thin in the picture and nowhere seen along its length?
+bool is_thin(const Tube& tube, const View& view, double pixels) {
+  constexpr double kThin = 5;      // pixels of radius; beyond, caps and the far side begin to show
+  constexpr double kAlong = 0.94;  // cosine; beyond, a half round does not cover the whole
+  if (!is_round(tube) || pixels > kThin) return false;
+  return std::none_of(tube.rings.begin(), tube.rings.end(), [&](const Tube::Ring& ring) {
+    return std::abs(ring.rotation.col(2).dot((view.eye - ring.position).normalized())) > kAlong;
+  });
+}
+
+/// The section turned about the centreline, as it is, with caps.
+void sweep_whole(const Tube& tube, const View& view, double pixels, TriMesh& mesh) {
+  const std::vector<OutlinePoint> outline = outline_of(tube, pixels);
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const auto n = static_cast<std::uint32_t>(outline.size());
   Mat3 R = tube.rings.front().rotation;
@@ -111,6 +141,44 @@ void sweep_tube(const Tube& tube, const View& view, TriMesh& mesh) {
   add_cap(outline, last_rim, tube.rings.back(), tube.rings.back().rotation.col(2), mesh);
 }
 
+/// A band of two vertices a point.
+void add_band(std::uint32_t first, std::size_t points, TriMesh& mesh) {
+  for (std::uint32_t i = 0; i + 1 < points; ++i) {
+    const std::uint32_t a = first + 2 * i;
+    mesh.indices.insert(mesh.indices.end(), {a, a + 1, a + 3, a, a + 3, a + 2});
+  }
+}
+
+}  // namespace
+
+void sweep_tube(const Tube& tube, const View& view, TriMesh& mesh) {
+  if (tube.rings.size() < 2) return;
+  double finest = view.pixel_size(tube.rings.front().position);
+  for (const Tube::Ring& ring : tube.rings) {
+    finest = std::min(finest, view.pixel_size(ring.position));
+  }
+  const double pixels = view.fineness * tube.radius / finest;
+  if (is_thin(tube, view, pixels)) {
+    sweep_front(tube, view, pixels < 2 ? 2 : 4, mesh);
+  } else {
+    sweep_whole(tube, view, pixels, mesh);
+  }
+}
+
+void sweep_shadow(const Tube& tube, const Vec3& to_light, TriMesh& mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  Vec3 side = Vec3::UnitX();
+  for (const Tube::Ring& ring : tube.rings) {
+    const Vec3 across = to_light.cross(ring.rotation.col(2));
+    if (across.norm() > 1e-6) side = across.normalized();
+    for (double reach : {tube.radius, -tube.radius}) {
+      mesh.vertices.push_back(
+          {(ring.position + reach * side).cast<float>(), Eigen::Vector3f::UnitZ(), {0, 0, 0, 255}});
+    }
+  }
+  add_band(first, tube.rings.size(), mesh);
+}
+
 void sweep_ribbon(const Ribbon& ribbon, const View& view, TriMesh& mesh) {
   const std::size_t count = ribbon.points.size();
   if (count < 2) return;
@@ -129,10 +197,7 @@ void sweep_ribbon(const Ribbon& ribbon, const View& view, TriMesh& mesh) {
     mesh.vertices.push_back({(p + reach).cast<float>(), Eigen::Vector3f::UnitZ(), color});
     mesh.vertices.push_back({(p - reach).cast<float>(), Eigen::Vector3f::UnitZ(), color});
   }
-  for (std::uint32_t i = 0; i + 1 < count; ++i) {
-    const std::uint32_t a = first + 2 * i;
-    mesh.indices.insert(mesh.indices.end(), {a, a + 1, a + 3, a, a + 3, a + 2});
-  }
+  add_band(first, count, mesh);
 }
 
 }  // namespace cprsim

@@ -11,6 +11,9 @@ namespace cprsim {
 /// pixels wide, so that they never vanish.
 void sweep_tube(const Tube& tube, const View& view, TriMesh& mesh);
 
+/// Appends what throws the rod's shadow: a flat ribbon that faces the light.
+void sweep_shadow(const Tube& tube, const Vec3& to_light, TriMesh& mesh);
+
 /// Appends a trace as a flat ribbon that faces the camera.
 void sweep_ribbon(const Ribbon& ribbon, const View& view, TriMesh& mesh);
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Soft shadows: first a few depths around the point tell how far above it the occluder is, then the
-// width of the percentage-closer filter grows with that distance (R. Fernando, "Percentage-closer
-// soft shadows", 2005): sharp where a thing stands on the ground, soft where it hovers.
+// Soft shadows of things that do not shade themselves: the shadow map is kept a second time as how
+// much of a texel is covered and at what depth, with its mip levels. A coarse level tells how far
+// above the point the occluder is, and with it the width of the half shadow (R. Fernando,
+// "Percentage-closer soft shadows", 2005); the level of that width is then the answer, read at four
+// places to be smooth. Sharp where a thing stands on the ground, soft where it hovers, at the cost
+// of five look-ups.
 #include "render/shaders/shaders.h"
 
 namespace cprsim::shaders {
@@ -16,15 +19,10 @@ uniform vec4 light_place[kLights];  // w = 0: direction towards the light
 uniform vec4 light_axis[kLights];   // w: cosine of the spot's half angle, -2 for no spot
 uniform vec3 light_color[kLights];
 uniform mat4 light_clip;
-uniform float shadow_texel, shadow_softness, shadow_normal_offset;
-uniform float still_shadow, moving_shadow;  // 1: the map is looked up
-uniform sampler2DShadow still_map, moving_map;
-uniform sampler2D still_depth, moving_depth;
-
-const vec2 kDisc[12] = vec2[](
-    vec2(-0.326, -0.406), vec2(-0.840, -0.074), vec2(-0.696, 0.457), vec2(-0.203, 0.621),
-    vec2(0.962, -0.195), vec2(0.473, -0.480), vec2(0.519, 0.767), vec2(0.185, -0.893),
-    vec2(0.507, 0.064), vec2(0.896, 0.412), vec2(-0.322, -0.933), vec2(-0.792, -0.598));
+uniform float shadow_texel, shadow_softness, shadow_search, shadow_normal_offset;
+uniform float shadowed;  // 1: the map is looked up
+uniform sampler2DShadow shadow_map;
+uniform sampler2D shadow_cover;  // covered share, and that times the depth
 
 vec3 light_coordinates(vec3 p) { return (light_clip * vec4(p, 1.0)).xyz * 0.5 + 0.5; }
 
@@ -33,24 +31,23 @@ bool lit_region(vec3 q) {
 }
 
 // 1 in full light, 0 in full shadow; for points on surfaces that cast no shadow on themselves
-float seen_softly(sampler2DShadow map, sampler2D depth, vec3 q) {
-  float search = shadow_softness + 1.5 * shadow_texel;
-  float blockers = 0.0, above = 0.0;
-  for (int i = 0; i < 12; i += 1) {
-    float d = textureLod(depth, q.xy + kDisc[i] * search, 0.0).r;
-    if (d < q.z) {
-      blockers += 1.0;
-      above += q.z - d;
-    }
-  }
-  if (blockers == 0.0) return 1.0;
-  float width = clamp(above / blockers * 2.0, 0.0, 1.0) * shadow_softness + 1.5 * shadow_texel;
-  float sum = 0.0;
-  for (int i = 0; i < 12; ++i) sum += textureLod(map, vec3(q.xy + kDisc[i] * width, q.z), 0.0);
-  return sum / 12.0;
+float seen_softly(sampler2D cover, vec3 q) {
+  vec2 near = textureLod(cover, q.xy, shadow_search).rg;
+  if (near.r < 0.002) return 1.0;
+  float above = q.z - near.g / near.r;
+  if (above < 0.0) return 1.0;
+  // in texels; 1.5 hides the texels of the finest level
+  float width = min(2.5 * above, 1.0) * shadow_softness / shadow_texel + 1.5;
+  float level = log2(width) - 0.5;
+  vec2 step = 0.5 * exp2(level) * shadow_texel * vec2(1.0, -1.0);
+  float covered = textureLod(cover, q.xy + step.xx, level).r +
+                  textureLod(cover, q.xy + step.xy, level).r +
+                  textureLod(cover, q.xy + step.yx, level).r +
+                  textureLod(cover, q.xy + step.yy, level).r;
+  return 1.0 - 0.25 * covered;
 }
 
-// 1 in full light, 0 in full shadow; cheaper, for the objects themselves
+// likewise, for the objects themselves
 float seen_sharply(sampler2DShadow map, vec3 q) {
   vec2 a = vec2(0.45, 1.05) * shadow_texel, b = vec2(-1.05, 0.45) * shadow_texel;
   return 0.25 * (textureLod(map, vec3(q.xy + a, q.z), 0.0) +

@@ -39,12 +39,9 @@ void main() {
   float facing = max(dot(n, to_eye), 0.0);
   float toward = dot(n, to_key);
   float seen = 1.0;
-  if (toward > 0.0) {
+  if (toward > 0.0 && shadowed > 0.5) {
     vec3 q = light_coordinates(p_W + n * shadow_normal_offset);
-    if (lit_region(q)) {
-      if (still_shadow > 0.5) seen = seen_sharply(still_map, q);
-      if (moving_shadow > 0.5) seen *= seen_sharply(moving_map, q);
-    }
+    if (lit_region(q)) seen = seen_sharply(shadow_map, q);
   }
   vec3 albedo = decoded(tint.rgb);
   vec3 key = key_color * (seen * max(toward, 0.0));
@@ -66,6 +63,9 @@ uniform mat4 clip_from_world, world_from_object;
 void main() { gl_Position = clip_from_world * (world_from_object * vec4(position, 1.0)); }
 )";
 
-const char* const kShadowFragment = "void main() {}\n";
+const char* const kShadowFragment = R"(
+layout(location = 0) out vec2 cover;
+void main() { cover = vec2(1.0, gl_FragCoord.z); }
+)";
 
 }  // namespace cprsim::shaders

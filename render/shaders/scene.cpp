@@ -7,43 +7,55 @@
 namespace cprsim::shaders {
 
 const char* const kSceneVertex = R"(
+layout(location = 0) in vec3 position;  // in clip coordinates
+layout(location = 2) in vec4 color;     // red: objects are to be seen here; green: shadows
 uniform vec3 ray_centre, ray_right, ray_up;  // of the picture's middle and half its edges
 out vec3 ray;
+flat out vec2 there;
 void main() {
-  vec2 c = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  ray = ray_centre + c.x * ray_right + c.y * ray_up;
-  gl_Position = vec4(c, 0.0, 1.0);
+  ray = ray_centre + position.x * ray_right + position.y * ray_up;
+  there = color.rg;
+  gl_Position = vec4(position.xy, 0.0, 1.0);
 }
 )";
 
 const char* const kSceneFragment = R"(
 in vec3 ray;
-uniform sampler2D objects;
+flat in vec2 there;
+uniform sampler2DMS objects;
 uniform vec3 eye;
 layout(location = 0) out vec4 pixel;
+
+vec4 object_at(ivec2 at) {
+  if (there.x < 0.5) return vec4(0.0);
+  return 0.25 * (texelFetch(objects, at, 0) + texelFetch(objects, at, 1) +
+                 texelFetch(objects, at, 2) + texelFetch(objects, at, 3));
+}
 
 #ifdef CACHED
 uniform sampler2D in_light, in_shade, range;
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  vec4 object = texelFetch(objects, at, 0);
+  vec4 object = object_at(at);
   vec3 color = texelFetch(in_light, at, 0).rgb;
-  float distance = texelFetch(range, at, 0).r;
-  if (distance > 0.0 && object.a < 1.0) {
-    vec3 q = light_coordinates(eye + distance * ray);
-    if (lit_region(q)) {
-      float seen = seen_softly(moving_map, moving_depth, q);
-      if (seen < 1.0) color = mix(texelFetch(in_shade, at, 0).rgb, color, seen);
+  if (there.y > 0.5) {
+    float distance = texelFetch(range, at, 0).r;
+    if (distance > 0.0) {
+      vec3 q = light_coordinates(eye + distance * ray);
+      if (lit_region(q)) {
+        float seen = seen_softly(shadow_cover, q);
+        if (seen < 1.0) color = mix(texelFetch(in_shade, at, 0).rgb, color, seen);
+      }
     }
   }
   pixel = vec4(object.rgb + (1.0 - object.a) * color, 1.0);
 }
 #else
 uniform vec3 ground_color, horizon_color, zenith_color, middle;
-uniform float ground_z, ground_there, grid, cell, fade_from, fade_to;
+uniform float ground_z, ground_there, grid, cell, fade_from, fade_to, line_width;
 #ifdef RANGE
-uniform sampler2D object_depth;
+uniform sampler2DMS object_depth;
 uniform vec2 depth_terms;  // distance = x / (y - depth)
 layout(location = 1) out float range;
 #endif
@@ -68,11 +80,10 @@ vec3 ground(vec3 p, vec3 backdrop) {
   vec3 n = vec3(0.0, 0.0, 1.0);
   float seen = 1.0;
   vec3 q = light_coordinates(p);
-  if (lit_region(q)) {
-    if (still_shadow > 0.5) seen = seen_softly(still_map, still_depth, q);
-    if (moving_shadow > 0.5) seen *= seen_softly(moving_map, moving_depth, q);
+  if (shadowed > 0.5 && lit_region(q)) {
+    seen = seen_softly(shadow_cover, q);
   }
-  float line = max(0.45 * lines(p.xy, cell, 1.0), lines(p.xy, 5.0 * cell, 1.3)) * grid;
+  float line = max(0.45 * lines(p.xy, cell, line_width), lines(p.xy, 5.0 * cell, 1.3 * line_width)) * grid;
   vec3 albedo = decoded(ground_color) * (1.0 - 0.16 * line);
   vec3 light = ambient_light(n) + key_color * (seen * max(to_key.z, 0.0)) + other_lights(p, n);
   return mix(encoded(albedo * light), backdrop, fade);
@@ -80,7 +91,7 @@ vec3 ground(vec3 p, vec3 backdrop) {
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  vec4 object = texelFetch(objects, at, 0);
+  vec4 object = object_at(at);
   vec3 direction = normalize(ray);
   vec3 color = sky(direction);
   float far = (ground_z - eye.z) / ray.z;

@@ -14,7 +14,7 @@ extern const char* const kLighting;
 extern const char* const kObjectVertex;
 extern const char* const kObjectFragment;
 
-/// Depth only, seen from the key light.
+/// Depth and cover, seen from the key light.
 extern const char* const kShadowVertex;
 extern const char* const kShadowFragment;
 
