@@ -29,8 +29,8 @@ struct LoadSpec {
   double rod_s = 0;
   FrameRef at;
   bool follower = false;  ///< components in the axes of `at` or of the section instead of the world
-  Mat3 R_expressed = Mat3::Identity();  ///< non-follower: axes of expressed_in at t = 0 in the world;
-                                        ///< follower: in the axes of `at` or of the section
+  Mat3 R_expressed = Mat3::Identity();  ///< non-follower: axes of expressed_in at t = 0 in the
+                                        ///< world; follower: in the axes of `at` or of the section
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< in the expressed_in axes
   bool has_profile = false;
   Profile profile;

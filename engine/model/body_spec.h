@@ -22,14 +22,14 @@ struct FrameRef {
 };
 
 struct BodySpec {
-  std::string name;   ///< scoped, e.g. robot::platform
+  std::string name;  ///< scoped, e.g. robot::platform
   Place place;
-  Pose X_WB;          ///< link frame at t = 0
+  Pose X_WB;               ///< link frame at t = 0
   bool is_static = false;  ///< of a static model: never moves
   bool gravity = true;
-  double mass = 0;             ///< kg; 0 for a static body without <inertial>
-  Vec3 com = Vec3::Zero();     ///< centre of mass in the link frame
-  Mat3 inertia = Mat3::Zero(); ///< about the centre of mass, link axes, kg m²
+  double mass = 0;                       ///< kg; 0 for a static body without <inertial>
+  Vec3 com = Vec3::Zero();               ///< centre of mass in the link frame
+  Mat3 inertia = Mat3::Zero();           ///< about the centre of mass, link axes, kg m²
   Vec3 linear_velocity = Vec3::Zero();   ///< of the link origin at t = 0, world axes
   Vec3 angular_velocity = Vec3::Zero();  ///< at t = 0, world axes
   bool velocity_given = false;
@@ -54,7 +54,7 @@ struct JointSpec {
   double upper = std::numeric_limits<double>::infinity();
   double effort_limit = std::numeric_limits<double>::infinity();
   double velocity_limit = std::numeric_limits<double>::infinity();
-  double damping = 0, friction = 0;                     ///< viscous and dry
+  double damping = 0, friction = 0;  ///< viscous and dry
   double spring_stiffness = 0, spring_reference = 0;
 };
 

@@ -18,8 +18,8 @@ enum class Quantity {
   kOrientation,  ///< quaternion x y z w
   kLinearVelocity,
   kAngularVelocity,
-  kForce,   ///< internal force n (base.wrench: see docs), world axes
-  kMoment,  ///< internal moment m, world axes
+  kForce,         ///< internal force n (base.wrench: see docs), world axes
+  kMoment,        ///< internal moment m, world axes
   kCurvature,     ///< u, section axes
   kShearStretch,  ///< v, section axes
   kLength,
@@ -46,10 +46,10 @@ struct Channel {
   std::string name;  ///< full, e.g. robot::platform.position.x
   std::string unit;  ///< "m", "rad/s", "1"
   ChannelEntity entity = ChannelEntity::kBody;
-  int index = -1;      ///< of the body, frame, joint or rod in the scene
-  double s = 0;        ///< rod points: fraction of the length, 0 base .. 1 tip
+  int index = -1;  ///< of the body, frame, joint or rod in the scene
+  double s = 0;    ///< rod points: fraction of the length, 0 base .. 1 tip
   Quantity quantity = Quantity::kPosition;
-  int component = 0;   ///< x y z (w)
+  int component = 0;  ///< x y z (w)
 };
 
 /// All scalar channels that `pattern` (with * globs) names; empty if none.

@@ -13,18 +13,29 @@ namespace cprsim {
 
 /// A triangle mesh in the coordinates of the shape that uses it (metres, scale already applied).
 struct MeshSpec {
-  std::string source;                            ///< resolved path, for messages
-  std::vector<Eigen::Vector3f> positions;        ///< V vertices
-  std::vector<Eigen::Vector3f> normals;          ///< V unit normals
-  std::vector<Eigen::Vector3f> colors;           ///< V diffuse colours in [0,1], or empty
+  std::string source;                              ///< resolved path, for messages
+  std::vector<Eigen::Vector3f> positions;          ///< V vertices
+  std::vector<Eigen::Vector3f> normals;            ///< V unit normals
+  std::vector<Eigen::Vector3f> colors;             ///< V diffuse colours in [0,1], or empty
   std::vector<std::array<unsigned, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 
-enum class ShapeKind { kEmpty, kBox, kSphere, kCylinder, kCapsule, kCone, kEllipsoid, kPlane, kMesh };
+enum class ShapeKind {
+  kEmpty,
+  kBox,
+  kSphere,
+  kCylinder,
+  kCapsule,
+  kCone,
+  kEllipsoid,
+  kPlane,
+  kMesh
+};
 
 /// One geometric primitive in its own frame, centred; axes of cylinder, capsule and cone along z.
-/// size means: box edge lengths; sphere (r,_,_); cylinder, capsule, cone (r, length, _), a capsule's
-/// length without its caps, a cone's apex at +length/2; ellipsoid semi-axes; plane (x,y extent, _).
+/// size means: box edge lengths; sphere (r,_,_); cylinder, capsule, cone (r, length, _), a
+/// capsule's length without its caps, a cone's apex at +length/2; ellipsoid semi-axes; plane (x,y
+/// extent, _).
 struct ShapeSpec {
   ShapeKind kind = ShapeKind::kEmpty;
   Vec3 size = Vec3::Zero();

@@ -12,9 +12,9 @@ namespace cprsim {
 enum class ShapeOfTime { kConstant, kStep, kRamp, kSmoothstep, kSine, kKeyframes };
 enum class Interpolation { kStep, kLinear, kPchip, kCubic };
 
-/// One summand. Step: `from` before `start`, `to` after. Ramp and smoothstep (quintic) go from `from` to
-/// `to` between start and end. Sine: amplitude sin(2 pi frequency (t - start) + phase) within
-/// [start, end], 0 outside. Keyframes hold their first and last value outside.
+/// One summand. Step: `from` before `start`, `to` after. Ramp and smoothstep (quintic) go from
+/// `from` to `to` between start and end. Sine: amplitude sin(2 pi frequency (t - start) + phase)
+/// within [start, end], 0 outside. Keyframes hold their first and last value outside.
 struct ProfileTerm {
   ShapeOfTime shape = ShapeOfTime::kConstant;
   double value = 0;  ///< constant
@@ -37,7 +37,8 @@ struct Profile {
   /// which is what an initial static equilibrium "before t = 0" sees.
   ProfileValue evaluate(double t, bool before = false) const;
 
-  /// Instants in (0, end] or at 0 at which the value or a derivative up to the second jumps, ascending.
+  /// Instants in (0, end] or at 0 at which the value or a derivative up to the second jumps,
+  /// ascending.
   std::vector<double> breakpoints(double end) const;
 };
 

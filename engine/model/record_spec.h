@@ -27,8 +27,8 @@ struct Expectation {
   Place place;
   std::vector<Channel> channels;  ///< scalar channels it speaks of (a vector's components)
   double at = 0, from = 0;
-  double to = -1;                 ///< -1: the end
-  std::vector<double> equals;     ///< one per channel
+  double to = -1;              ///< -1: the end
+  std::vector<double> equals;  ///< one per channel
   std::optional<double> tolerance, above, below, min, max;
 };
 

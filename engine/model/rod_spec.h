@@ -46,8 +46,8 @@ struct DampingSpec {
 
 enum class EndJoint { kFree, kFixed, kRevolute, kBall, kUniversal };
 
-/// How a rod's end is held. The rod's end frame coincides with `at` when the joint's freedoms are 0:
-/// at the base z points into the rod, at the tip out of it.
+/// How a rod's end is held. The rod's end frame coincides with `at` when the joint's freedoms are
+/// 0: at the base z points into the rod, at the tip out of it.
 struct RodEndSpec {
   EndJoint joint = EndJoint::kFree;
   FrameRef at;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scene file says: plain structs in SI units, every name resolved to an index, every pose in the
-// world or in a body. Filled by scenes/loader, frozen into a Robot by engine/robot/build.
+// What a scene file says: plain structs in SI units, every name resolved to an index, every pose in
+// the world or in a body. Filled by scenes/loader, frozen into a Robot by engine/robot/build.
 #pragma once
 
 #include <string>
@@ -26,8 +26,9 @@ struct NamedFrame {
 
 struct Scene {
   std::string name;
-  std::vector<std::string> files;  ///< [0] the scene itself, then what it includes; Place::file indexes
-  std::string hash;                ///< of the bytes of all files, hex
+  std::vector<std::string>
+      files;         ///< [0] the scene itself, then what it includes; Place::file indexes
+  std::string hash;  ///< of the bytes of all files, hex
 
   Vec3 gravity{0, 0, -9.81};
   double max_step_size = 0.001;

@@ -26,14 +26,14 @@ enum class NonlinearAlgorithm { kLadder, kNewton, kLevenbergMarquardt };
 struct SolverSpec {
   Place place;
   Method method = Method::kAuto;
-  std::optional<double> accuracy;               ///< m
-  std::optional<int> points;                    ///< arc-length cells per rod
-  std::optional<ArcIntegrator> integrator;      ///< default gauss4
-  std::optional<SchemeKind> scheme;             ///< default esdirk32
+  std::optional<double> accuracy;           ///< m
+  std::optional<int> points;                ///< arc-length cells per rod
+  std::optional<ArcIntegrator> integrator;  ///< default gauss4
+  std::optional<SchemeKind> scheme;         ///< default esdirk32
   std::optional<double> alpha, rho_inf;
-  std::optional<double> step, tolerance;        ///< fixed step s; or relative local error
+  std::optional<double> step, tolerance;  ///< fixed step s; or relative local error
   NonlinearAlgorithm algorithm = NonlinearAlgorithm::kLadder;
-  std::optional<double> residual_tolerance;     ///< dimensionless
+  std::optional<double> residual_tolerance;  ///< dimensionless
   std::optional<int> max_iterations;
   bool halve_on_failure = true;
   int retries = 4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid bodies that neither a rod nor a joint holds. The engine asks somebody else to integrate them
-// (collision/ answers with Bullet); no such object exists in a scene without free bodies.
+// Rigid bodies that neither a rod nor a joint holds. The engine asks somebody else to integrate
+// them (collision/ answers with Bullet); no such object exists in a scene without free bodies.
 #pragma once
 
 #include <vector>
@@ -21,8 +21,8 @@ class FreeBodies {
  public:
   virtual ~FreeBodies() = default;
 
-  /// Advances all free bodies by `step` seconds. @param others motions of all bodies of the scene at the
-  /// end of the step (indexed as Scene::bodies; entries of free bodies are ignored).
+  /// Advances all free bodies by `step` seconds. @param others motions of all bodies of the scene
+  /// at the end of the step (indexed as Scene::bodies; entries of free bodies are ignored).
   virtual void advance(double step, const std::vector<BodyMotion>& others) = 0;
 
   /// Writes the free bodies' motions into `all`, indexed as Scene::bodies.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop: builds a robot from a scene, finds its start, and advances it step by step. Knows nothing of
-// files, pictures or terminals: an observer receives snapshots.
+// The loop: builds a robot from a scene, finds its start, and advances it step by step. Knows
+// nothing of files, pictures or terminals: an observer receives snapshots.
 #pragma once
 
 #include <functional>
@@ -14,13 +14,14 @@
 
 namespace cprsim {
 
-class FreeBodies;  // engine/robot/free_bodies.h: bodies that no rod holds, integrated by somebody else
+class FreeBodies;  // engine/robot/free_bodies.h: bodies that no rod holds, integrated by somebody
+                   // else
 
 /// How a run ended.
 enum class RunStatus {
-  kRunning,      ///< advance() may be called
-  kDone,         ///< the duration is reached, or the static equilibrium found
-  kFailed,       ///< see failure
+  kRunning,  ///< advance() may be called
+  kDone,     ///< the duration is reached, or the static equilibrium found
+  kFailed,   ///< see failure
 };
 
 /// Sums over a run, for run.json and the closing lines.
@@ -37,24 +38,26 @@ struct RunStatistics {
 struct RodFacts {
   std::string name;
   double mass = 0, bending_x = 0, bending_y = 0, torsion = 0, axial = 0, shear_x = 0;
-  double first_frequency = 0;   ///< Hz, as a cantilever
-  double buckling_load = 0;     ///< N, clamped-free Euler load of the weaker plane
-  double growth_exponent = 0;   ///< design section 5, at the step used
+  double first_frequency = 0;  ///< Hz, as a cantilever
+  double buckling_load = 0;    ///< N, clamped-free Euler load of the weaker plane
+  double growth_exponent = 0;  ///< design section 5, at the step used
   int cells = 0, segments = 0, unknowns = 0;
   double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
 };
 
 struct ProblemFacts {
   std::string integrator, scheme;
-  double step = 0;         ///< fixed step, or 0 when adaptive
+  double step = 0;  ///< fixed step, or 0 when adaptive
   int body_unknowns = 0, constraint_unknowns = 0;
   std::vector<RodFacts> rods;
 };
 
 class Simulation {
  public:
-  /// @param free_bodies may be null if the scene has no free bodies or nothing is to integrate them.
-  /// @throws std::invalid_argument if the scene asks for what the engine cannot do (a loader checks first).
+  /// @param free_bodies may be null if the scene has no free bodies or nothing is to integrate
+  /// them.
+  /// @throws std::invalid_argument if the scene asks for what the engine cannot do (a loader checks
+  /// first).
   explicit Simulation(const Scene& scene, std::unique_ptr<FreeBodies> free_bodies = nullptr);
   ~Simulation();
   Simulation(const Simulation&) = delete;

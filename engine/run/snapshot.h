@@ -1,39 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an observer may see of the robot at one instant: plain data in world axes, no solver objects.
-// Channels, writers, pictures and expectations are all computed from it.
+// What an observer may see of the robot at one instant: plain data in world axes, no solver
+// objects. Channels, writers, pictures and expectations are all computed from it.
 #pragma once
 
 #include <vector>
 
 #include "engine/math/types.h"
+#include "engine/rod/shape.h"
 
 namespace cprsim {
 
 struct BodySample {
-  Pose X_WB;                     ///< link frame
+  Pose X_WB;                       ///< link frame
   Vec3 linear_velocity{0, 0, 0};   ///< of the link origin, world axes
   Vec3 angular_velocity{0, 0, 0};  ///< world axes
 };
 
 struct JointSample {
   double position = 0, velocity = 0;
-  double effort = 0;  ///< along the joint's freedom: what the drive (and spring, damper) exerts on the child
-};
-
-/// One point of a rod. The internal wrench is what the part beyond s exerts on the part before s.
-struct RodPoint {
-  double s = 0;  ///< fraction of the length, 0 base .. 1 tip
-  Vec3 position{0, 0, 0};
-  Mat3 rotation = Mat3::Identity();  ///< section to world, z = tangent
-  Vec3 velocity{0, 0, 0};            ///< at fixed s, world axes
-  Vec3 force{0, 0, 0}, moment{0, 0, 0};            ///< n, m, world axes
-  Vec3 curvature{0, 0, 0}, shear_stretch{0, 0, 1};  ///< u, v, section axes
-};
-
-struct RodSample {
-  double length = 0;
-  double radius = 0;             ///< half the section's largest dimension, for drawing
-  std::vector<RodPoint> points;  ///< base → tip, s ascending, first s = 0 and last s = 1
+  double effort =
+      0;  ///< along the joint's freedom: what the drive (and spring, damper) exerts on the child
 };
 
 /// J. work is what drives and loads have put in, dissipated what damping has taken out since t = 0;
@@ -44,10 +30,10 @@ struct EnergySample {
 };
 
 struct SolverSample {
-  int iterations = 0;   ///< Newton iterations of the step that ended here
-  double residual = 0;  ///< scaled, dimensionless
-  double step = 0;      ///< s
-  double wall_time = 0; ///< s, of that step
+  int iterations = 0;    ///< Newton iterations of the step that ended here
+  double residual = 0;   ///< scaled, dimensionless
+  double step = 0;       ///< s
+  double wall_time = 0;  ///< s, of that step
 };
 
 struct ContactSample {
@@ -65,8 +51,8 @@ struct Snapshot {
   ContactSample contact;
 };
 
-/// The state between two snapshots: cubic Hermite in positions, geodesic in rotations, linear in the rest.
-/// Requires a.time <= t <= b.time.
+/// The state between two snapshots: cubic Hermite in positions, geodesic in rotations, linear in
+/// the rest. Requires a.time <= t <= b.time.
 Snapshot interpolate(const Snapshot& a, const Snapshot& b, double t);
 
 /// The point of a rod at fraction s of its length, interpolated along the rod likewise.

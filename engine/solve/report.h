@@ -8,11 +8,11 @@
 namespace cprsim {
 
 enum class SolveStatus {
-  kConverged,      ///< residual <= tolerance
-  kStalled,        ///< no step reduces the residual any more
-  kIterationLimit, ///< max_iterations reached with residual > tolerance
-  kNotFinite,      ///< a residual or a step is NaN or infinite
-  kSingular        ///< the linearised system has no unique solution
+  kConverged,       ///< residual <= tolerance
+  kStalled,         ///< no step reduces the residual any more
+  kIterationLimit,  ///< max_iterations reached with residual > tolerance
+  kNotFinite,       ///< a residual or a step is NaN or infinite
+  kSingular         ///< the linearised system has no unique solution
 };
 
 /// Which rung of the ladder found (or last tried for) the solution.
@@ -24,13 +24,13 @@ const char* to_string(SolveStage stage);
 struct SolveReport {
   SolveStatus status = SolveStatus::kConverged;
   SolveStage stage = SolveStage::kNewton;
-  int iterations = 0;        ///< all Newton or LM iterations, over all rungs
+  int iterations = 0;  ///< all Newton or LM iterations, over all rungs
   int factorizations = 0;
-  long evaluations = 0;      ///< section evaluations
-  double residual = 0;       ///< largest scaled row, dimensionless
+  long evaluations = 0;  ///< section evaluations
+  double residual = 0;   ///< largest scaled row, dimensionless
   double initial_residual = 0;
-  double growth = 0;         ///< largest segment transition norm
-  std::string worst_row;     ///< e.g. "tip of robot::leg_3, moment y"
+  double growth = 0;            ///< largest segment transition norm
+  std::string worst_row;        ///< e.g. "tip of robot::leg_3, moment y"
   std::vector<double> history;  ///< residual per iteration
 
   bool converged() const { return status == SolveStatus::kConverged; }

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scene to a robot: weld what fixed joints hold together, sort links into ground, Newton
+// bodies and free ones, place rods, joints, drives and loads on them.
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "engine/math/so3.h"
+#include "engine/robot/robot.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+namespace {
+
+/// Links welded together by fixed joints; the ground is element n.
+class Welds {
+ public:
+  explicit Welds(const Scene& scene) : parent_(scene.bodies.size() + 1) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+      if (scene.bodies[i].is_static) join(i, ground());
+    for (const JointSpec& joint : scene.joints)
+      if (joint.kind == JointKind::kFixed) join(element(joint.parent), element(joint.child));
+  }
+
+  std::size_t ground() const { return parent_.size() - 1; }
+
+  std::size_t element(int body) const {
+    return body == kWorld ? ground() : static_cast<std::size_t>(body);
+  }
+
+  std::size_t group(std::size_t i) const {
+    while (parent_[i] != i)
+      i = parent_[i];
+    return i;
+  }
+
+  bool grounded(std::size_t i) const { return group(i) == group(ground()); }
+
+ private:
+  void join(std::size_t a, std::size_t b) { parent_[group(a)] = group(b); }
+
+  std::vector<std::size_t> parent_;
+};
+
+// A group of links is part of the Newton system if a joint other than a weld, or a rod, holds it.
+std::vector<char> held_groups(const Scene& scene, const Welds& welds) {
+  std::vector<char> held(scene.bodies.size() + 1, 0);
+  auto hold = [&](int body) { held[welds.group(welds.element(body))] = 1; };
+  for (const JointSpec& joint : scene.joints) {
+    if (joint.kind == JointKind::kFixed) continue;
+    hold(joint.parent);
+    hold(joint.child);
+  }
+  for (const RodSpec& rod : scene.rods) {
+    if (rod.base.joint != EndJoint::kFree) hold(rod.base.at.body);
+    if (rod.tip.joint != EndJoint::kFree) hold(rod.tip.at.body);
+  }
+  return held;
+}
+
+void add_bodies(Robot& robot, const Welds& welds, const std::vector<char>& held) {
+  const Scene& scene = *robot.scene;
+  std::vector<int> body_of_group(scene.bodies.size() + 1, LinkPlace::kGround);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const std::size_t group = welds.group(i);
+    LinkPlace place;
+    place.X = scene.bodies[i].X_WB;
+    if (!welds.grounded(i)) {
+      if (!held[group]) {
+        place.body = LinkPlace::kFree;
+      } else {
+        if (body_of_group[group] == LinkPlace::kGround) {
+          body_of_group[group] = static_cast<int>(robot.bodies.size());
+          robot.bodies.emplace_back();
+        }
+        place.body = body_of_group[group];
+        robot.bodies[static_cast<std::size_t>(place.body)].links.push_back(static_cast<int>(i));
+      }
+    }
+    robot.links.push_back(place);
+  }
+}
+
+// Mass, centre of mass and inertia of welded links.
+void compose(Robot& robot, RigidBody& body) {
+  const Scene& scene = *robot.scene;
+  auto spec = [&](int i) -> const BodySpec& { return scene.bodies[static_cast<std::size_t>(i)]; };
+  body.R = spec(body.links.front()).X_WB.R;
+  Vec3 first_moment = Vec3::Zero(), gravity_moment = Vec3::Zero();
+  for (int i : body.links) {
+    const BodySpec& link = spec(i);
+    const Vec3 com = link.X_WB * link.com;
+    body.mass += link.mass;
+    first_moment += link.mass * com;
+    if (!link.gravity) continue;
+    body.gravity_mass += link.mass;
+    gravity_moment += link.mass * com;
+  }
+  body.p = body.mass > 0 ? Vec3(first_moment / body.mass) : spec(body.links.front()).X_WB.p;
+  if (body.gravity_mass > 0)
+    body.gravity_arm = body.R.transpose() * (gravity_moment / body.gravity_mass - body.p);
+  for (int i : body.links) {
+    const BodySpec& link = spec(i);
+    const Mat3 R = body.R.transpose() * link.X_WB.R;
+    const Vec3 r = body.R.transpose() * (link.X_WB * link.com - body.p);
+    body.inertia += R * link.inertia * R.transpose() - link.mass * hat(r) * hat(r);
+    robot.links[static_cast<std::size_t>(i)].X = body.pose().inverse() * link.X_WB;
+  }
+}
+
+Attachment attach(const Robot& robot, const FrameRef& frame) {
+  if (frame.body == kWorld) return {LinkPlace::kGround, frame.X_BF};
+  const LinkPlace& link = robot.links[static_cast<std::size_t>(frame.body)];
+  return {link.body, link.X * frame.X_BF};
+}
+
+void add_joints(Robot& robot) {
+  for (const JointSpec& spec : robot.scene->joints) {
+    if (spec.kind == JointKind::kFixed) {
+      robot.joint_of_spec.push_back(-1);
+      continue;
+    }
+    if (spec.kind != JointKind::kRevolute && spec.kind != JointKind::kContinuous &&
+        spec.kind != JointKind::kPrismatic)
+      throw std::invalid_argument("joint '" + spec.name +
+                                  "' is of a type this version cannot simulate");
+    const Attachment parent = attach(robot, {spec.parent, spec.X_PJ}),
+                     child = attach(robot, {spec.child, spec.X_CJ});
+    robot.joint_of_spec.push_back(static_cast<int>(robot.joints.size()));
+    robot.joints.emplace_back(spec, parent.body, child.body, parent.X, child.X);
+  }
+}
+
+bool off_for(const RodSpec& rod, const char* effect) {
+  return std::find(rod.without.begin(), rod.without.end(), effect) != rod.without.end();
+}
+
+ShootingOptions shooting_options(const Scene& scene, const RodSpec& rod) {
+  auto has = [&](Effect e) { return scene.effects.has(e) && !off_for(rod, effect_name(e)); };
+  ShootingOptions o;
+  o.integrator = scene.solver.integrator.value_or(ArcIntegrator::kGauss4);
+  // measured default: docs/accuracy.md, 1e-7 L and better for robots bent by a radian
+  o.cells = scene.solver.points.value_or(o.integrator == ArcIntegrator::kGauss6 ? 6 : 12);
+  o.extension = has(Effect::kExtension);
+  o.shear = has(Effect::kShear);
+  o.rotary_inertia = has(Effect::kRotaryInertia);
+  o.damping = has(Effect::kDamping) && rod.damping.has_value();
+  return o;
+}
+
+void add_rods(Robot& robot) {
+  const Scene& scene = *robot.scene;
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const RodSpec& spec = scene.rods[i];
+    RobotRod rod;
+    rod.spec = &spec;
+    rod.section = section_properties(spec);
+    rod.base_held = spec.base.joint != EndJoint::kFree;
+    rod.tip_held = spec.tip.joint != EndJoint::kFree;
+    rod.base = attach(robot, spec.base.at);
+    if (rod.tip_held) rod.tip = attach(robot, spec.tip.at);
+    rod.length = spec.length;
+    for (const DriveSpec& drive : scene.drives)
+      if (drive.rod == static_cast<int>(i)) rod.length_drive = &drive.profile;
+    ShootingOptions options = shooting_options(scene, spec);
+    for (const LoadSpec& load : scene.loads) {
+      if (load.rod != static_cast<int>(i)) continue;
+      rod.loads.push_back(&load);
+      options.stations.push_back(load.rod_s);
+    }
+    rod.gravity = spec.gravity && !off_for(spec, "gravity");
+    if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
+    auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
+                                               rod.section, rod.length, options);
+    model->set_straight(robot.pose_of(rod.base));
+    rod.model = std::move(model);
+    robot.rods.push_back(std::move(rod));
+  }
+}
+
+void add_actions(Robot& robot) {
+  const Scene& scene = *robot.scene;
+  for (const DriveSpec& drive : scene.drives) {
+    if (drive.joint < 0) continue;
+    const int index = robot.joint_of_spec[static_cast<std::size_t>(drive.joint)];
+    if (index < 0) continue;
+    Joint& joint = robot.joints[static_cast<std::size_t>(index)];
+    if (drive.quantity == DriveQuantity::kPosition) joint.motion = Joint::Motion::kPosition;
+    if (drive.quantity == DriveQuantity::kVelocity) joint.motion = Joint::Motion::kVelocity;
+    robot.joint_drives.push_back({index, &drive});
+  }
+  for (const LoadSpec& load : scene.loads)
+    if (load.rod < 0) {
+      const Attachment at = attach(robot, load.at);
+      if (at.body >= 0) robot.body_loads.push_back({&load, at});
+    }
+}
+
+RobotScale choose_scale(const Robot& robot) {
+  RobotScale scale;
+  double length = 0, force = 0, weight = 0;
+  for (const RobotRod& rod : robot.rods) {
+    length = std::max(length, rod.length);
+    force = std::max(force, rod.section.K_bt.head<2>().maxCoeff() / (rod.length * rod.length));
+  }
+  for (const RigidBody& body : robot.bodies)
+    weight += body.mass * 9.81;
+  if (length == 0) length = 0.1;
+  scale.length = length;
+  scale.force = force > 0 ? force : std::max(weight, 1e-6);
+  return scale;
+}
+
+}  // namespace
+
+std::vector<int> free_links(const Scene& scene) {
+  const Welds welds(scene);
+  const std::vector<char> held = held_groups(scene, welds);
+  std::vector<int> free;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!welds.grounded(i) && !held[welds.group(i)]) free.push_back(static_cast<int>(i));
+  return free;
+}
+
+Robot build_robot(const Scene& scene) {
+  Robot robot;
+  robot.scene = &scene;
+  if (scene.effects.has(Effect::kGravity)) robot.gravity = scene.gravity;
+  const Welds welds(scene);
+  add_bodies(robot, welds, held_groups(scene, welds));
+  for (RigidBody& body : robot.bodies)
+    compose(robot, body);
+  add_joints(robot);
+  add_rods(robot);
+  add_actions(robot);
+  robot.scale = choose_scale(robot);
+  return robot;
+}
+
+Pose Robot::pose_of(const Attachment& a) const {
+  return a.body < 0 ? a.X : bodies[static_cast<std::size_t>(a.body)].pose() * a.X;
+}
+
+Port Robot::port(const Attachment& a) const {
+  const Pose X = pose_of(a);
+  Port port;
+  port.R = X.R;
+  port.p = X.p;
+  port.moves = a.body >= 0;
+  if (port.moves) port.arm = X.p - bodies[static_cast<std::size_t>(a.body)].p;
+  return port;
+}
+
+Pose Robot::link_pose(std::size_t link) const {
+  const LinkPlace& place = links[link];
+  return place.body < 0 ? place.X : bodies[static_cast<std::size_t>(place.body)].pose() * place.X;
+}
+
+std::vector<Track*> Robot::tracks() {
+  std::vector<Track*> all;
+  for (RigidBody& body : bodies) {
+    all.push_back(&body.position);
+    all.push_back(&body.rotation);
+  }
+  for (Joint& joint : joints)
+    all.push_back(&joint.track);
+  for (RobotRod& rod : rods)
+    for (Track* track : rod.model->tracks())
+      all.push_back(track);
+  return all;
+}
+
+}  // namespace cprsim

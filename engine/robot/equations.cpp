@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The residual side: drives and loads at an instant, rows, unknowns.
+#include "engine/robot/equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/math/so3.h"
+
+namespace cprsim {
+
+Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_(tolerance) {
+  const std::size_t n = robot.bodies.size();
+  wrench_.assign(n, Vec6::Zero());
+  body_tangent_.assign(n, Mat6::Zero());
+  condensed_.resize(robot.rods.size());
+  eliminations_.resize(robot.rods.size());
+  joint_gap_.assign(robot.joints.size(), Vec6::Zero());
+  body_unknowns_ = 6 * static_cast<int>(n);
+  int offset = body_unknowns_;
+  for (const Joint& joint : robot.joints) {
+    joint_offset_.push_back(offset);
+    offset += joint.unknowns();
+  }
+  size_ = offset;
+}
+
+Pose Equations::body_pose(int body) const {
+  return body < 0 ? Pose{} : robot_.bodies[static_cast<std::size_t>(body)].pose();
+}
+
+double Equations::load_factor(const LoadSpec& load) const {
+  return fraction_ * (load.has_profile ? load.profile.evaluate(t_, before_).value : 1.0);
+}
+
+PointLoad Equations::point_load(const LoadSpec& load) const {
+  const double f = load_factor(load);
+  return {load.rod_s, f * (load.R_expressed * load.force), f * (load.R_expressed * load.torque),
+          load.follower};
+}
+
+void Equations::prepare_rods() {
+  for (RobotRod& rod : robot_.rods) {
+    RodForcing& forcing = rod.forcing;
+    if (rod.length_drive) rod.length = rod.length_drive->evaluate(t_, before_).value;
+    forcing.length = rod.length;
+    forcing.gravity = rod.gravity ? Vec3(fraction_ * robot_.gravity) : Vec3(Vec3::Zero());
+    forcing.loads.clear();
+    for (const LoadSpec* load : rod.loads)
+      forcing.loads.push_back(point_load(*load));
+    forcing.tolerance = tolerance_;
+    forcing.axial_softness = softness_;
+    forcing.relaxation = drag_ * rod.section.K_bt.head<2>().maxCoeff() / std::pow(rod.length, 4);
+    rod.model->prepare(rates_, forcing);
+  }
+}
+
+void Equations::set_instant(double t, bool before, const StageRates& rates) {
+  t_ = t;
+  before_ = before;
+  rates_ = rates;
+  for (const JointDrive& drive : robot_.joint_drives) {
+    Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
+    const ProfileValue value = drive.spec->profile.evaluate(t, before);
+    switch (drive.spec->quantity) {
+      case DriveQuantity::kPosition:
+        joint.q = value.value;
+        break;
+      case DriveQuantity::kEffort:
+        joint.effort = value.value;
+        break;
+      case DriveQuantity::kVelocity:
+        if (rates.dynamic()) joint.q = (value.value - joint.track.x_h[0]) / rates.c_v;
+        break;
+      case DriveQuantity::kLength:
+        break;
+    }
+  }
+  prepare_rods();
+}
+
+void Equations::set_fraction(double fraction) {
+  if (fraction < 1 && !gaps_captured_) {
+    for (RobotRod& rod : robot_.rods)
+      rod.model->capture_gap(robot_.port(rod.base), robot_.port(rod.tip));
+    for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+      const Joint& joint = robot_.joints[j];
+      joint_gap_[j] = joint
+                          .rows(body_pose(joint.parent), body_pose(joint.child), rates_,
+                                robot_.scale.length, robot_.scale.moment(), robot_.scale.force)
+                          .closure;
+    }
+    gaps_captured_ = true;
+  }
+  fraction_ = fraction;
+  for (RobotRod& rod : robot_.rods)
+    rod.model->hold_gap(gaps_captured_ ? 1 - fraction : 0);
+  prepare_rods();
+}
+
+void Equations::set_relaxation(double drag) {
+  drag_ = drag;
+  marked_.clear();
+  for (const RigidBody& body : robot_.bodies)
+    marked_.push_back(body.pose());
+  for (RobotRod& rod : robot_.rods)
+    rod.model->mark_positions();
+  prepare_rods();
+}
+
+void Equations::set_softness(double softness) {
+  softness_ = softness;
+  prepare_rods();
+}
+
+bool Equations::wants_soft_start() const {
+  return std::any_of(robot_.rods.begin(), robot_.rods.end(),
+                     [](const RobotRod& rod) { return rod.tip_held; });
+}
+
+void Equations::restart() {
+  set_unknowns(start_);
+  gaps_captured_ = false;
+  prepare_rods();
+  evaluate();
+}
+
+RobotUnknowns Equations::unknowns() const {
+  RobotUnknowns u;
+  for (const RobotRod& rod : robot_.rods)
+    u.rods.push_back(rod.model->unknowns());
+  for (const RigidBody& body : robot_.bodies)
+    u.bodies.push_back(body.pose());
+  for (const Joint& joint : robot_.joints) {
+    u.joint_q.push_back(joint.q);
+    u.joint_lambda.push_back(joint.lambda);
+  }
+  return u;
+}
+
+void Equations::set_unknowns(const RobotUnknowns& u) {
+  for (std::size_t i = 0; i < u.rods.size(); ++i)
+    robot_.rods[i].model->set_unknowns(u.rods[i]);
+  for (std::size_t i = 0; i < u.bodies.size(); ++i) {
+    robot_.bodies[i].R = u.bodies[i].R;
+    robot_.bodies[i].p = u.bodies[i].p;
+  }
+  for (std::size_t i = 0; i < u.joint_q.size(); ++i) {
+    if (robot_.joints[i].q_unknown()) robot_.joints[i].q = u.joint_q[i];
+    robot_.joints[i].lambda = u.joint_lambda[i];
+  }
+}
+
+void Equations::predict(const std::vector<const RobotUnknowns*>& past,
+                        const std::vector<double>& weights) {
+  std::vector<const RodModel::Unknowns*> rod_past(past.size());
+  for (std::size_t r = 0; r < robot_.rods.size(); ++r) {
+    for (std::size_t i = 0; i < past.size(); ++i)
+      rod_past[i] = &past[i]->rods[r];
+    robot_.rods[r].model->predict(rod_past, weights);
+  }
+  for (std::size_t b = 0; b < robot_.bodies.size(); ++b) {
+    const Mat3& R0 = past[0]->bodies[b].R;
+    Vec3 p = Vec3::Zero(), turn = Vec3::Zero();
+    for (std::size_t i = 0; i < past.size(); ++i) {
+      p += weights[i] * past[i]->bodies[b].p;
+      turn += weights[i] * log_so3(R0.transpose() * past[i]->bodies[b].R);
+    }
+    robot_.bodies[b].p = p;
+    robot_.bodies[b].R = orthonormalized(R0 * exp_so3(turn));
+  }
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    Joint& joint = robot_.joints[j];
+    double q = 0;
+    joint.lambda.setZero();
+    for (std::size_t i = 0; i < past.size(); ++i) {
+      q += weights[i] * past[i]->joint_q[j];
+      joint.lambda += weights[i] * past[i]->joint_lambda[j];
+    }
+    if (joint.q_unknown()) joint.q = q;
+  }
+}
+
+void Equations::note(double value, Worst where, ProblemResidual& r) {
+  r.merit += 0.5 * value * value;
+  const double size = std::abs(value);
+  if (!std::isfinite(value)) r.finite = false;
+  if (size <= r.largest && std::isfinite(value)) return;
+  r.largest = std::isfinite(value) ? size : std::numeric_limits<double>::infinity();
+  worst_ = where;
+}
+
+// Newton-Euler: everything that acts, minus what inertia takes; tangents of what is not rods or
+// joints.
+Vec6 Equations::body_rows(std::size_t b) {
+  RigidBody& body = robot_.bodies[b];
+  Vec6 rows = Vec6::Zero();
+  Mat6& tangent = body_tangent_[b];
+  tangent.setZero();
+  const RigidBody::Inertial weight = body.weight(fraction_ * robot_.gravity);
+  rows += weight.wrench;
+  tangent += weight.by_motion;
+  if (rates_.dynamic()) {
+    const RigidBody::Inertial inertial = body.inertial(rates_);
+    rows -= inertial.wrench;
+    tangent -= inertial.by_motion;
+  }
+  if (drag_ > 0) {
+    const double k = drag_ * robot_.scale.force / robot_.scale.length,
+                 k_turn = drag_ * robot_.scale.moment();
+    rows.head<3>() -= k_turn * log_so3(body.R * marked_[b].R.transpose());
+    rows.tail<3>() -= k * (body.p - marked_[b].p);
+    tangent.topLeftCorner<3, 3>() -= k_turn * Mat3::Identity();
+    tangent.bottomRightCorner<3, 3>() -= k * Mat3::Identity();
+  }
+  return rows;
+}
+
+void Equations::add_body_loads() {
+  for (const BodyLoad& load : robot_.body_loads) {
+    const auto b = static_cast<std::size_t>(load.at.body);
+    const RigidBody& body = robot_.bodies[b];
+    const Pose X = body.pose() * load.at.X;
+    const Mat3 axes =
+        load.spec->follower ? Mat3(X.R * load.spec->R_expressed) : load.spec->R_expressed;
+    const double f = load_factor(*load.spec);
+    const Vec3 F = f * (axes * load.spec->force), M = f * (axes * load.spec->torque),
+               arm = X.p - body.p;
+    wrench_[b].head<3>() += M + arm.cross(F);
+    wrench_[b].tail<3>() += F;
+    // d(arm × F) = (phi × arm) × F, and with the axes dF = phi × F
+    body_tangent_[b].topLeftCorner<3, 3>() += hat(F) * hat(arm);
+    if (!load.spec->follower) continue;
+    body_tangent_[b].topLeftCorner<3, 3>() -= hat(M) + hat(arm) * hat(F);
+    body_tangent_[b].bottomLeftCorner<3, 3>() -= hat(F);
+  }
+}
+
+void Equations::add_rod_wrenches() {
+  for (const RobotRod& rod : robot_.rods) {
+    if (rod.base_held && rod.base.body >= 0)
+      wrench_[static_cast<std::size_t>(rod.base.body)] +=
+          rod.model->wrench_on_base(robot_.port(rod.base));
+    if (rod.tip_held && rod.tip.body >= 0)
+      wrench_[static_cast<std::size_t>(rod.tip.body)] +=
+          rod.model->wrench_on_tip(robot_.port(rod.tip));
+  }
+}
+
+void Equations::add_joint_wrenches() {
+  for (const Joint& joint : robot_.joints) {
+    const Joint::Wrenches w = joint.wrenches(body_pose(joint.parent), body_pose(joint.child));
+    if (joint.parent >= 0) wrench_[static_cast<std::size_t>(joint.parent)] += w.on_parent;
+    if (joint.child >= 0) wrench_[static_cast<std::size_t>(joint.child)] += w.on_child;
+  }
+}
+
+ProblemResidual Equations::evaluate() {
+  ProblemResidual r;
+  for (std::size_t i = 0; i < robot_.rods.size(); ++i) {
+    const RobotRod& rod = robot_.rods[i];
+    const RodResidual own = rod.model->evaluate(robot_.port(rod.base), robot_.port(rod.tip));
+    r.merit += 0.5 * own.sum_squares;
+    r.finite = r.finite && own.finite;
+    if (own.largest > r.largest) {
+      r.largest = own.largest;
+      worst_ = {Worst::Kind::kRod, static_cast<int>(i), own.worst_row};
+    }
+  }
+  for (std::size_t b = 0; b < wrench_.size(); ++b)
+    wrench_[b] = body_rows(b);
+  add_body_loads();
+  add_rod_wrenches();
+  add_joint_wrenches();
+  if (!bodies_held_) {
+    // inertia turns position round-off into forces, see ShootingRod::prepare
+    constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
+    const RobotScale& unit = robot_.scale;
+    for (std::size_t b = 0; b < wrench_.size(); ++b) {
+      const double stiffness = robot_.bodies[b].mass * rates_.c_v * rates_.c_w;
+      const double noise =
+          std::max(1.0, kRoundOff * stiffness * unit.length / (unit.force * tolerance_));
+      for (int i = 0; i < 6; ++i)
+        note(wrench_[b][i] / (noise * (i < 3 ? unit.moment() : unit.force)),
+             {Worst::Kind::kBody, static_cast<int>(b), i}, r);
+    }
+  }
+  for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
+    const Joint& joint = robot_.joints[j];
+    const Joint::Rows rows =
+        joint.rows(body_pose(joint.parent), body_pose(joint.child), rates_, robot_.scale.length,
+                   robot_.scale.moment(), robot_.scale.force);
+    const double open = gaps_captured_ ? 1 - fraction_ : 0;
+    for (int i = 0; i < 6; ++i)
+      note(rows.closure[i] - open * joint_gap_[j][i], {Worst::Kind::kJoint, static_cast<int>(j), i},
+           r);
+    if (joint.q_unknown()) note(rows.effort, {Worst::Kind::kJoint, static_cast<int>(j), 6}, r);
+  }
+  return r;
+}
+
+void Equations::keep() {
+  kept_.bodies.clear();
+  kept_.joint_q.clear();
+  kept_.joint_lambda.clear();
+  for (const RigidBody& body : robot_.bodies)
+    kept_.bodies.push_back(body.pose());
+  for (const Joint& joint : robot_.joints) {
+    kept_.joint_q.push_back(joint.q);
+    kept_.joint_lambda.push_back(joint.lambda);
+  }
+  for (RobotRod& rod : robot_.rods)
+    rod.model->keep();
+}
+
+void Equations::move(double alpha) {
+  for (std::size_t b = 0; b < robot_.bodies.size() && !bodies_held_; ++b) {
+    const Vec6 d = alpha * body_direction(static_cast<int>(b));
+    robot_.bodies[b].R = orthonormalized(exp_so3(d.head<3>()) * kept_.bodies[b].R);
+    robot_.bodies[b].p = kept_.bodies[b].p + d.tail<3>();
+  }
+  for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
+    Joint& joint = robot_.joints[j];
+    const Eigen::Index at = joint_offset_[j];
+    joint.lambda = kept_.joint_lambda[j] + alpha * x_.segment<6>(at);
+    if (joint.q_unknown()) joint.q = kept_.joint_q[j] + alpha * x_[at + 6];
+  }
+  for (RobotRod& rod : robot_.rods)
+    rod.model->move(alpha);
+}
+
+std::string Equations::worst_row() const {
+  static const char* const kWrench[] = {"moment x", "moment y", "moment z",
+                                        "force x",  "force y",  "force z"};
+  static const char* const kClosure[] = {"rotation x", "rotation y", "rotation z", "position x",
+                                         "position y", "position z", "effort"};
+  const auto i = static_cast<std::size_t>(worst_.index);
+  switch (worst_.kind) {
+    case Worst::Kind::kBody: {
+      const int link = robot_.bodies[i].links.front();
+      return "balance of " + robot_.scene->bodies[static_cast<std::size_t>(link)].name + ", " +
+             kWrench[worst_.row];
+    }
+    case Worst::Kind::kJoint:
+      return "joint " + robot_.joints[i].spec->name + ", " + kClosure[worst_.row];
+    case Worst::Kind::kRod:
+      break;
+  }
+  return robot_.rods.empty() ? "" : robot_.rods[i].model->row_name(worst_.row);
+}
+
+long Equations::section_evaluations() const {
+  long sum = 0;
+  for (const RobotRod& rod : robot_.rods)
+    sum += rod.model->section_evaluations();
+  return sum;
+}
+
+int Equations::unknown_count() const {
+  int sum = body_unknowns_;
+  for (const Joint& joint : robot_.joints)
+    sum += joint.unknowns();
+  for (const RobotRod& rod : robot_.rods)
+    sum += rod.model->unknown_count();
+  return sum;
+}
+
+}  // namespace cprsim

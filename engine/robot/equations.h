@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// F(x) = 0 at one instant, for the whole robot: who owns which unknown and row, and how rows are
+// scaled.
+//
+//   unknowns                                   rows
+//   body b: (phi, dp) of its centre of mass    Newton-Euler (moment, force)
+//   joint j: lambda (6), q where unknown       closure (6), effort
+//   rod r: its own                             its own; condensed to z (6) with T z + ... = 0 and
+//   the wrenches on
+//                                              its bodies (engine/rod/rod_model.h)
+// Rods are condensed one by one, never assembled: the global system has six unknowns a body, plus
+// joints. A rod whose T is singular hands its z up to the global system (a delayed pivot).
+#pragma once
+
+#include <Eigen/LU>
+#include <string>
+#include <vector>
+
+#include "engine/robot/robot.h"
+#include "engine/solve/problem.h"
+
+namespace cprsim {
+
+/// All unknowns of the robot by value: to retry, restart, extrapolate.
+struct RobotUnknowns {
+  std::vector<RodModel::Unknowns> rods;
+  std::vector<Pose> bodies;
+  std::vector<double> joint_q;
+  std::vector<Vec6> joint_lambda;
+};
+
+class Equations final : public Problem {
+ public:
+  Equations(Robot& robot, double tolerance);
+
+  /// Sets drives, loads and time coefficients for the solves that follow. `before`: left limits at
+  /// jumps.
+  void set_instant(double t, bool before, const StageRates& rates);
+
+  /// Bodies stay where they are (rods find their shape between them).
+  void hold_bodies(bool hold) { bodies_held_ = hold; }
+
+  RobotUnknowns unknowns() const;
+  void set_unknowns(const RobotUnknowns& u);
+  /// Weighted sum of past unknowns as the next guess; weights sum to 1.
+  void predict(const std::vector<const RobotUnknowns*>& past, const std::vector<double>& weights);
+
+  /// restart() returns to the unknowns at this call.
+  void mark_start() { start_ = unknowns(); }
+
+  ProblemResidual evaluate() override;
+  bool find_direction(double mu) override;
+  void keep() override;
+  void move(double alpha) override;
+
+  void mark() override { mark_ = unknowns(); }
+
+  void return_to_mark() override { set_unknowns(mark_); }
+
+  void set_fraction(double fraction) override;
+  void set_relaxation(double drag) override;
+  /// Lets rods stretch as easily as they bend. Legs of unequal length that start straight would
+  /// otherwise carry axial forces hundreds of times their buckling load after the first Newton
+  /// step.
+  void set_softness(double softness) override;
+  bool wants_soft_start() const override;
+  void restart() override;
+  std::string worst_row() const override;
+
+  double growth() const override { return growth_; }
+
+  long section_evaluations() const override;
+
+  long factorizations() const override { return factorizations_; }
+
+  /// Increment of a body in the last direction found.
+  Vec6 body_direction(int body) const;
+
+  /// Makes the rods' directions the motion that follows from the given body motions, rods in
+  /// equilibrium.
+  bool follow_bodies(const std::vector<Vec6>& motions);
+
+  const StageRates& rates() const { return rates_; }
+
+  int unknown_count() const;
+
+ private:
+  struct Worst {
+    enum class Kind { kRod, kBody, kJoint } kind = Kind::kRod;
+    int index = 0, row = 0;
+  };
+
+  void prepare_rods();
+  double load_factor(const LoadSpec& load) const;
+  PointLoad point_load(const LoadSpec& load) const;
+  Vec6 body_rows(std::size_t b);
+  void add_rod_wrenches();
+  void add_joint_wrenches();
+  void add_body_loads();
+  void note(double value, Worst where, ProblemResidual& r);
+
+  Pose joint_parent(const Joint& j) const { return body_pose(j.parent); }
+
+  Pose body_pose(int body) const;
+  bool condense_rods(bool keep_all);
+  void assemble();
+  void assemble_rod(std::size_t r);
+  void assemble_bodies();
+  void assemble_joints();
+  bool solve(double mu);
+  void distribute();
+  VecX column_units() const;
+  VecX row_units() const;
+
+  Robot& robot_;
+  double tolerance_;
+  double t_ = 0;
+  bool before_ = false;
+  StageRates rates_;
+  double fraction_ = 1, drag_ = 0, softness_ = 0;
+  bool bodies_held_ = false;
+  bool gaps_captured_ = false;
+
+  // residual side
+  std::vector<Vec6> wrench_;        ///< on each body
+  std::vector<Mat6> body_tangent_;  ///< of loads and weight minus inertia
+  std::vector<Vec6> joint_gap_;
+  std::vector<Pose> marked_;
+  Worst worst_;
+  double worst_size_ = 0;
+
+  // linear side
+  std::vector<CondensedRod> condensed_;
+
+  struct Elimination {
+    bool delayed = false;
+    int offset = -1;  ///< of z in the global system when delayed
+    Mat6 z_A, z_B;    ///< z = z_A zeta_A + z_B zeta_B + z0
+    Vec6 z0;
+  };
+
+  std::vector<Elimination> eliminations_;
+  int body_unknowns_ = 0, size_ = 0;
+  std::vector<int> joint_offset_;
+  MatX J_;
+  VecX r_, x_;
+  double growth_ = 0;
+  long factorizations_ = 0;
+
+  // kept
+  RobotUnknowns kept_, start_, mark_;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The robot: bodies, joints and rods of the one Newton system, with what drives and loads them.
+// Built once from a scene (build_robot); afterwards only states change.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/model/scene.h"
+#include "engine/robot/body.h"
+#include "engine/robot/joint.h"
+#include "engine/rod/rod_model.h"
+#include "engine/section/section.h"
+
+namespace cprsim {
+
+/// Where a link of the scene went.
+struct LinkPlace {
+  static constexpr int kGround = -1;  ///< never moves
+  static constexpr int kFree = -2;    ///< held by no rod and no joint: integrated elsewhere
+  int body = kGround;                 ///< index into Robot::bodies, kGround or kFree
+  Pose X;  ///< link frame in the body (origin: its centre of mass) or in the world
+};
+
+/// A frame on a body of the Newton system or on the ground.
+struct Attachment {
+  int body = LinkPlace::kGround;
+  Pose X;
+};
+
+struct RobotRod {
+  const RodSpec* spec = nullptr;
+  SectionProperties section;
+  std::unique_ptr<RodModel> model;
+  Attachment base, tip;
+  bool base_held = true, tip_held = false;
+  double length = 0;
+  const Profile* length_drive = nullptr;
+  std::vector<const LoadSpec*> loads;
+  bool gravity = true;
+  RodForcing forcing;  ///< at the current instant
+};
+
+struct BodyLoad {
+  const LoadSpec* spec = nullptr;
+  Attachment at;
+};
+
+struct JointDrive {
+  int joint = -1;  ///< index into Robot::joints
+  const DriveSpec* spec = nullptr;
+};
+
+/// Numbers that make the global rows dimensionless.
+struct RobotScale {
+  double length = 1, force = 1;
+
+  double moment() const { return force * length; }
+};
+
+struct Robot {
+  const Scene* scene = nullptr;
+  std::vector<LinkPlace> links;  ///< as Scene::bodies
+  std::vector<RigidBody> bodies;
+  std::vector<Joint> joints;
+  std::vector<int> joint_of_spec;  ///< Scene::joints → joints, -1 where welded
+  std::vector<RobotRod> rods;
+  std::vector<BodyLoad> body_loads;
+  std::vector<JointDrive> joint_drives;
+  Vec3 gravity = Vec3::Zero();  ///< 0 unless the effect is on
+  RobotScale scale;
+
+  Pose pose_of(const Attachment& a) const;
+  Port port(const Attachment& a) const;
+  Pose link_pose(std::size_t link) const;
+
+  /// Everything a time scheme integrates.
+  std::vector<Track*> tracks();
+};
+
+/// Links that Bullet (or somebody) else integrates: movable, no joint, no rod.
+std::vector<int> free_links(const Scene& scene);
+
+/// @throws std::invalid_argument for what this version cannot do.
+Robot build_robot(const Scene& scene);
+
+}  // namespace cprsim

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One cell of a rod: the Cosserat balance over a short piece of arc length, by a Runge-Kutta table.
+//
+// Balance at a section (Antman; Till, Aloi, Rucker 2019, eqs. 1-4), time already turned into
+// algebra by the scheme, rho A p_tt = k p + (history):
+//   p_s = R v                                     (1)      R_s = R u^ (2) n_s = k p + b (3) m_s =
+//   -p_s × n + t(R)                     (4) u = u0 + C_bt R^T m                           (5) v =
+//   v0 + C_se R^T n                       (6)
+// k, b carry inertia and distributed force; u0, v0 rest shape and damping history; C_bt, C_se are
+// compliances (a zero is a rigid mode); t is the rate of the section's angular momentum.
+//
+// The table acts on the rotation vector Omega of R = R_a exp(Omega^), Omega_s = w, u = J_r(Omega) w
+// (Runge-Kutta-Munthe-Kaas). The stage rates w, and v when (6) cannot be resolved explicitly, stay
+// unknowns of the outer Newton ("lifted", Albersmeyer & Diehl, SIAM J. Optim. 20, 2010): a sweep
+// evaluates (1)-(4) explicitly, has (5), (6) as residuals, and eliminates their linearisation cell
+// by cell. Nothing is iterated inside a cell.
+#pragma once
+
+#include "engine/rod/tableau.h"
+
+namespace cprsim {
+
+/// Which of (6) is an unknown. Picked once per rod and mode.
+enum class CellLaw {
+  kKirchhoff,         ///< v = v0: no shear, no extension
+  kExtensibleStatic,  ///< (6) explicit, valid while k = 0
+  kExtensible         ///< stage v lifted
+};
+
+/// Pose and internal wrench at a section, world axes; R row-major.
+struct NodeState {
+  double R[9], p[3], n[3], m[3];
+};
+
+/// What all cells of a rod share during one solve.
+struct CellModel {
+  const ArcTableau* table = nullptr;
+  double h = 0;  ///< cell length, m
+  double C_bt[3] = {}, C_se[3] = {};
+  double k = 0;  ///< N/m²
+  bool rotary = false;
+  double rhoJ[3] = {};      ///< section inertia, kg m
+  double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term
+  bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
+};
+
+/// One stage: inputs of the balance, unknowns, and what the last evaluation found.
+struct CellStage {
+  double u0[3], v0[3], b[3];
+  double R_start[9], theta_h[3],
+      omega_h[3];  ///< rotary history: reference rotation and affine parts
+
+  double w[3], v[3];  ///< unknowns (v: kExtensible only, otherwise a result)
+
+  double Omega[3], R[9], p[3], n[3], m[3], u[3], tau[3];  ///< tau = R v
+  double torque[3], torque_phi[9];  ///< t of (4) and its derivative by the world rotation increment
+  double theta[3], theta_t[3], omega[3], omega_t[3];
+  double residual_u[3], residual_v[3];  ///< (5), (6)
+};
+
+/// Sensitivities travel in blocks of columns: rows phi, p, n, m (world axes; phi the rotation
+/// increment), row-major 12 × columns. Columns 0..5 belong to the unknowns at the segment's
+/// start; 6..11 (only when 16) to the motion of the base body; then one affine column, and padding.
+constexpr int kNarrow = 8, kWide = 16;
+constexpr int kMaxLifted = 24;  ///< 6 per stage
+
+struct CellKernel {
+  int lifted;  ///< unknowns per cell
+  void (*evaluate)(const CellModel&, CellStage* stages, const NodeState& start, NodeState& end);
+  /// Y (12 × columns): start → end. dU (lifted × columns): increments of the lifted unknowns, w of
+  /// all stages then v. The affine column takes the residuals (5), (6) along. Requires a preceding
+  /// evaluate with the same arguments.
+  /// @return false if the local system is singular.
+  bool (*linearize_narrow)(const CellModel&, const CellStage* stages, const NodeState& start,
+                           const NodeState& end, double* Y, double* dU);
+  bool (*linearize_wide)(const CellModel&, const CellStage* stages, const NodeState& start,
+                         const NodeState& end, double* Y, double* dU);
+};
+
+/// The kernel for this machine. @param stages 1..4.
+const CellKernel& cell_kernel(int stages, CellLaw law);
+
+}  // namespace cprsim

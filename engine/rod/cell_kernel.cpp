@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Evaluation and exact linearisation of a cell; equations in engine/rod/cell.h, numbered there.
+// This file is compiled once per vector width (CPRSIM_KERNEL names the copy). Columns are
+// independent and contraction is off, so all copies give the same bits.
+#include "engine/rod/cell.h"
+#include "engine/section/rotary.h"
+#include "engine/section/small_vector.h"
+
+namespace cprsim {
+namespace {
+
+constexpr int round_up(int n) {
+  return (n + 7) / 8 * 8;
+}
+
+// Nonlinear evaluation: (1)-(4) explicitly in the order the law allows, then the residuals (5),
+// (6).
+template <int S, CellLaw law>
+void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeState& end) {
+  const ArcTableau& T = *M.table;
+  const double h = M.h;
+  const M3 R0 = load_matrix(start.R);
+  const V3 p0 = load(start.p), n0 = load(start.n), m0 = load(start.m);
+  V3 tau[S], n_s[S], m_s[S];
+  V3 Omega_end = {0, 0, 0};
+
+  // rotations of the stages
+  for (int j = 0; j < S; ++j) {
+    V3 Omega = {0, 0, 0};
+    for (int k = 0; k < S; ++k)
+      Omega = Omega + (h * T.a[j][k]) * load(st[k].w);
+    const RotationCoefficients k = rotation_coefficients(dot(Omega, Omega));
+    const V3 w = load(st[j].w);
+    const V3 Ow = cross(Omega, w);
+    store(st[j].Omega, Omega);
+    store(st[j].u, w + (-k.A) * Ow + k.B * cross(Omega, Ow));
+    store_matrix(st[j].R, R0 * rotation_exp(Omega, k));
+    Omega_end = Omega_end + (h * T.b[j]) * w;
+  }
+
+  // (6) explicit in statics: forces do not depend on positions
+  if constexpr (law == CellLaw::kExtensibleStatic) {
+    for (int j = 0; j < S; ++j) {
+      V3 n = n0;
+      for (int k = 0; k < S; ++k)
+        n = n + (h * T.a[j][k]) * load(st[k].b);
+      store(st[j].v, load(st[j].v0) + scaled(M.C_se, transposed_times(load_matrix(st[j].R), n)));
+    }
+  } else if constexpr (law == CellLaw::kKirchhoff) {
+    for (int j = 0; j < S; ++j)
+      store(st[j].v, load(st[j].v0));
+  }
+
+  // (1)
+  for (int j = 0; j < S; ++j) {
+    tau[j] = load_matrix(st[j].R) * load(st[j].v);
+    store(st[j].tau, tau[j]);
+  }
+  // (3)
+  for (int j = 0; j < S; ++j) {
+    V3 p = p0;
+    for (int k = 0; k < S; ++k)
+      p = p + (h * T.a[j][k]) * tau[k];
+    store(st[j].p, p);
+    n_s[j] = M.k * p + load(st[j].b);
+  }
+  // (4)
+  for (int j = 0; j < S; ++j) {
+    V3 n = n0;
+    for (int k = 0; k < S; ++k)
+      n = n + (h * T.a[j][k]) * n_s[k];
+    store(st[j].n, n);
+    m_s[j] = cross(n, tau[j]);
+    if (M.rotary) {
+      evaluate_rotary(M, st[j]);
+      m_s[j] = m_s[j] + load(st[j].torque);
+    }
+  }
+  // (5), (6)
+  for (int j = 0; j < S; ++j) {
+    V3 m = m0;
+    for (int k = 0; k < S; ++k)
+      m = m + (h * T.a[j][k]) * m_s[k];
+    store(st[j].m, m);
+    const M3 R = load_matrix(st[j].R);
+    store(st[j].residual_u,
+          load(st[j].u) - load(st[j].u0) - scaled(M.C_bt, transposed_times(R, m)));
+    if constexpr (law == CellLaw::kExtensible)
+      store(st[j].residual_v,
+            load(st[j].v) - load(st[j].v0) - scaled(M.C_se, transposed_times(R, load(st[j].n))));
+  }
+
+  V3 p = p0, n = n0, m = m0;
+  for (int j = 0; j < S; ++j) {
+    p = p + (h * T.b[j]) * tau[j];
+    n = n + (h * T.b[j]) * n_s[j];
+    m = m + (h * T.b[j]) * m_s[j];
+  }
+  store_matrix(end.R,
+               R0 * rotation_exp(Omega_end, rotation_coefficients(dot(Omega_end, Omega_end))));
+  store(end.p, p);
+  store(end.n, n);
+  store(end.m, m);
+}
+
+// Rows of sensitivities: three rows of W columns.
+template <int W>
+struct alignas(64) Rows {
+  double r[3][W];
+};
+
+template <int W>
+inline void set_zero(Rows<W>& A) {
+  for (auto& row : A.r)
+    for (int c = 0; c < W; ++c)
+      row[c] = 0;
+}
+
+template <int W>
+inline void add_scaled(Rows<W>& A, double s, const Rows<W>& B) {
+  for (int i = 0; i < 3; ++i)
+    for (int c = 0; c < W; ++c)
+      A.r[i][c] += s * B.r[i][c];
+}
+
+// A += s M B
+template <int W>
+inline void add_product(Rows<W>& A, double s, const M3& M, const Rows<W>& B) {
+  for (int i = 0; i < 3; ++i) {
+    const double x = s * M.a[3 * i], y = s * M.a[3 * i + 1], z = s * M.a[3 * i + 2];
+    for (int c = 0; c < W; ++c)
+      A.r[i][c] += x * B.r[0][c] + y * B.r[1][c] + z * B.r[2][c];
+  }
+}
+
+// A += a × B
+template <int W>
+inline void add_cross(Rows<W>& A, V3 a, const Rows<W>& B) {
+  for (int c = 0; c < W; ++c) {
+    A.r[0][c] += a.y * B.r[2][c] - a.z * B.r[1][c];
+    A.r[1][c] += a.z * B.r[0][c] - a.x * B.r[2][c];
+    A.r[2][c] += a.x * B.r[1][c] - a.y * B.r[0][c];
+  }
+}
+
+// adds a 3×3 block into columns first .. first + 2
+template <int W>
+inline void add_block(Rows<W>& A, int first, double s, const M3& M) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      A.r[i][first + j] += s * M.a[3 * i + j];
+}
+
+// diag(C) R^T: from a world wrench to section strains
+inline M3 compliance_of_axes(const M3& R, const double* C) {
+  M3 CRt = transpose(R);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      CRt.a[3 * i + j] *= C[i];
+  return CRt;
+}
+
+// Gauss-Jordan with row pivoting on an LC × W array whose first LC columns are the matrix. Fixed
+// loops over whole rows, so that they vectorise.
+template <int LC, int W>
+bool eliminate(double (*A)[W]) {
+  for (int k = 0; k < LC; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < LC; ++i)
+      if (fabs(A[i][k]) > fabs(A[pivot][k])) pivot = i;
+    if (!(fabs(A[pivot][k]) > 1e-300)) return false;
+    if (pivot != k)
+      for (int c = 0; c < W; ++c) {
+        const double t = A[k][c];
+        A[k][c] = A[pivot][c];
+        A[pivot][c] = t;
+      }
+    const double s = 1 / A[k][k];
+    for (int c = 0; c < W; ++c)
+      A[k][c] *= s;
+    for (int i = 0; i < LC; ++i) {
+      if (i == k) continue;
+      const double f = A[i][k];
+      for (int c = 0; c < W; ++c)
+        A[i][c] -= f * A[k][c];
+    }
+  }
+  return true;
+}
+
+// All sensitivities of one cell, columns: lifted unknowns first, then the columns of Y.
+template <int S, CellLaw law, int NC>
+struct Linearization {
+  static constexpr int kLifted = law == CellLaw::kExtensible ? 6 * S : 3 * S;
+  static constexpr int W = round_up(kLifted + NC);
+  Rows<W> phi0, p0, n0, m0, phi[S], tau[S], p[S], n[S], m_s[S];
+  M3 turn[S];  // R_j J_r(Omega_j)
+  M3 J_r[S];
+  alignas(64) double law_rows[kLifted][W];
+
+  void take_columns(const double* Y) {
+    Rows<W>* const target[4] = {&phi0, &p0, &n0, &m0};
+    for (int b = 0; b < 4; ++b) {
+      set_zero(*target[b]);
+      for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < NC; ++c)
+          target[b]->r[i][kLifted + c] = Y[(3 * b + i) * NC + c];
+    }
+  }
+
+  void rotations(const CellModel& M, const CellStage* st) {
+    for (int j = 0; j < S; ++j) {
+      const V3 Omega = load(st[j].Omega);
+      const RotationCoefficients k = rotation_coefficients(dot(Omega, Omega));
+      J_r[j] = right_jacobian(Omega, k);
+      turn[j] = load_matrix(st[j].R) * J_r[j];
+      phi[j] = phi0;
+      for (int l = 0; l < S; ++l)
+        if (M.table->a[j][l] != 0) add_block(phi[j], 3 * l, M.h * M.table->a[j][l], turn[j]);
+    }
+  }
+
+  // d tau = phi × tau + R dv
+  void tangents(const CellModel& M, const CellStage* st) {
+    for (int j = 0; j < S; ++j) {
+      set_zero(tau[j]);
+      const M3 R = load_matrix(st[j].R);
+      add_cross(tau[j], -1.0 * load(st[j].tau), phi[j]);
+      if constexpr (law == CellLaw::kExtensible) add_block(tau[j], 3 * S + 3 * j, 1.0, R);
+      if constexpr (law == CellLaw::kExtensibleStatic) {
+        // dv = C R^T (dn - phi × n), dn that of the start
+        Rows<W> moved = n0;
+        add_cross(moved, load(st[j].n), phi[j]);
+        add_product(tau[j], 1.0, R * compliance_of_axes(R, M.C_se), moved);
+      }
+    }
+  }
+
+  void forces(const CellModel& M, const CellStage* st) {
+    for (int j = 0; j < S; ++j) {
+      p[j] = p0;
+      for (int k = 0; k < S; ++k)
+        if (M.table->a[j][k] != 0) add_scaled(p[j], M.h * M.table->a[j][k], tau[k]);
+    }
+    for (int j = 0; j < S; ++j) {
+      n[j] = n0;
+      if (M.k != 0)
+        for (int k = 0; k < S; ++k)
+          if (M.table->a[j][k] != 0) add_scaled(n[j], M.h * M.table->a[j][k] * M.k, p[k]);
+      set_zero(m_s[j]);
+      add_cross(m_s[j], load(st[j].n), tau[j]);
+      add_cross(m_s[j], -1.0 * load(st[j].tau), n[j]);
+      if (M.rotary) add_product(m_s[j], 1.0, load_matrix(st[j].torque_phi), phi[j]);
+    }
+  }
+
+  void laws(const CellModel& M, const CellStage* st) {
+    for (int j = 0; j < S; ++j) {
+      const M3 R = load_matrix(st[j].R);
+      // (5)
+      Rows<W> rows;
+      set_zero(rows);
+      add_block(rows, 3 * j, 1.0, J_r[j]);
+      const V3 Omega = load(st[j].Omega);
+      const M3 D =
+          right_jacobian_derivative(Omega, load(st[j].w), rotation_coefficients(dot(Omega, Omega)));
+      for (int k = 0; k < S; ++k)
+        if (M.table->a[j][k] != 0) add_block(rows, 3 * k, M.h * M.table->a[j][k], D);
+      Rows<W> moved = m0;
+      for (int k = 0; k < S; ++k)
+        if (M.table->a[j][k] != 0) add_scaled(moved, M.h * M.table->a[j][k], m_s[k]);
+      add_cross(moved, load(st[j].m), phi[j]);
+      add_product(rows, -1.0, compliance_of_axes(R, M.C_bt), moved);
+      put_rows(rows, 3 * j, st[j].residual_u);
+      // (6)
+      if constexpr (law == CellLaw::kExtensible) {
+        set_zero(rows);
+        add_block(rows, 3 * S + 3 * j, 1.0, identity());
+        moved = n[j];
+        add_cross(moved, load(st[j].n), phi[j]);
+        add_product(rows, -1.0, compliance_of_axes(R, M.C_se), moved);
+        put_rows(rows, 3 * S + 3 * j, st[j].residual_v);
+      }
+    }
+  }
+
+  void put_rows(const Rows<W>& rows, int first, const double* residual) {
+    constexpr int kAffine = kLifted + (NC == kNarrow ? 6 : 12);
+    for (int i = 0; i < 3; ++i) {
+      for (int c = 0; c < W; ++c)
+        law_rows[first + i][c] = rows.r[i][c];
+      law_rows[first + i][kAffine] += residual[i];
+    }
+  }
+
+  void end(const CellModel& M, const CellStage* st, const NodeState& end_node, double* Y,
+           double* dU) {
+    for (int i = 0; i < kLifted; ++i)
+      for (int c = 0; c < NC; ++c)
+        dU[i * NC + c] = -law_rows[i][kLifted + c];
+    V3 Omega = {0, 0, 0};
+    for (int j = 0; j < S; ++j)
+      Omega = Omega + (M.h * M.table->b[j]) * load(st[j].w);
+    const M3 turn_end =
+        load_matrix(end_node.R) * right_jacobian(Omega, rotation_coefficients(dot(Omega, Omega)));
+    for (int j = 0; j < S; ++j) {
+      const double hb = M.h * M.table->b[j];
+      add_block(phi0, 3 * j, hb, turn_end);
+      add_scaled(p0, hb, tau[j]);
+      if (M.k != 0) add_scaled(n0, hb * M.k, p[j]);
+      add_scaled(m0, hb, m_s[j]);
+    }
+    const Rows<W>* const source[4] = {&phi0, &p0, &n0, &m0};
+    for (int b = 0; b < 4; ++b)
+      for (int i = 0; i < 3; ++i) {
+        double* y = Y + (3 * b + i) * NC;
+        const double* row = source[b]->r[i];
+        for (int c = 0; c < NC; ++c)
+          y[c] = row[kLifted + c];
+        for (int l = 0; l < kLifted; ++l) {
+          const double f = row[l];
+          for (int c = 0; c < NC; ++c)
+            y[c] += f * dU[l * NC + c];
+        }
+      }
+  }
+};
+
+template <int S, CellLaw law, int NC>
+bool linearize(const CellModel& M, const CellStage* st, const NodeState&, const NodeState& end,
+               double* Y, double* dU) {
+  using L = Linearization<S, law, NC>;
+  L lin;
+  lin.take_columns(Y);
+  lin.rotations(M, st);
+  lin.tangents(M, st);
+  lin.forces(M, st);
+  lin.laws(M, st);
+  if (!eliminate<L::kLifted, L::W>(lin.law_rows)) return false;
+  lin.end(M, st, end, Y, dU);
+  return true;
+}
+
+template <int S, CellLaw law>
+constexpr CellKernel make_kernel() {
+  return {law == CellLaw::kExtensible ? 6 * S : 3 * S, evaluate<S, law>, linearize<S, law, kNarrow>,
+          linearize<S, law, kWide>};
+}
+
+template <CellLaw law>
+constexpr CellKernel kKernels[kMaxStages] = {make_kernel<1, law>(), make_kernel<2, law>(),
+                                             make_kernel<3, law>(), make_kernel<4, law>()};
+
+}  // namespace
+
+const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law);
+
+const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law) {
+  switch (law) {
+    case CellLaw::kKirchhoff:
+      return kKernels<CellLaw::kKirchhoff>[stages - 1];
+    case CellLaw::kExtensibleStatic:
+      return kKernels<CellLaw::kExtensibleStatic>[stages - 1];
+    case CellLaw::kExtensible:
+      break;
+  }
+  return kKernels<CellLaw::kExtensible>[stages - 1];
+}
+
+}  // namespace cprsim

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The contract every discretisation of a rod fulfils: a rod with unknowns of its own is linearised,
+// its unknowns are eliminated stably, and what remains is a mixed two-port, exact at the current
+// state:
+//
+//   T z + T_A zeta_A + T_B zeta_B + t = 0                       six rows on six remaining unknowns
+//   z          (1) W_A = WA_z z + WA_A zeta_A + wa      wrench on the base's body, about its
+//   reference point                  (2) W_B = WB_z z + WB_A zeta_A + WB_B zeta_B + wb    on the
+//   tip's body                                         (3)
+//
+// zeta = (phi, dp): increment of a body's rotation and reference point, world axes; wrenches
+// (moment, force), world axes. Where T is regular z follows at once and (2), (3) become the 12 × 12
+// stiffness two-port; where it is not (a straight inextensible rod transmits any axial force) z
+// joins the global unknowns, so that nothing is ever divided by a stiffness that does not exist.
+// Statics, all time schemes and the whole robot see nothing else of a rod.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/math/types.h"
+#include "engine/rod/rod_end.h"
+#include "engine/rod/shape.h"
+#include "engine/time/scheme.h"
+
+namespace cprsim {
+
+struct CondensedRod {
+  Mat6 T, T_A, T_B;
+  Vec6 t;
+  Mat6 WA_z, WA_A;
+  Vec6 wa;
+  Mat6 WB_z, WB_A, WB_B;
+  Vec6 wb;
+  double growth = 0;  ///< largest segment transition norm
+};
+
+/// A concentrated wrench on the rod, world axes or (follower) section axes.
+struct PointLoad {
+  double s = 0;  ///< fraction of the length
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  bool follower = false;
+};
+
+/// What acts on the rod during one solve.
+struct RodForcing {
+  double length = 0;
+  Vec3 gravity = Vec3::Zero();   ///< m/s²
+  std::vector<PointLoad> loads;  ///< in the order and at the s given at construction
+  double relaxation = 0;  ///< N s/m² over the pseudo time step: drag towards the marked positions
+  double axial_softness =
+      0;  ///< extra axial compliance in units of L²/EI: see Equations::set_softness
+  double tolerance = 1e-9;  ///< of the solve: below round-off, row scales grow instead
+};
+
+struct RodResidual {
+  double sum_squares = 0;
+  double largest = 0;
+  int worst_row = 0;
+  bool finite = true;
+};
+
+struct RodEnergy {
+  double kinetic = 0, elastic = 0, gravity = 0;
+  double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping
+  double feed_power =
+      0;  ///< W, brought in per unit feed rate of the length drive (N): see shooting.cpp
+};
+
+class RodModel {
+ public:
+  virtual ~RodModel() = default;
+
+  /// Sets coefficients, histories and loads for the solves that follow.
+  virtual void prepare(const StageRates& rates, const RodForcing& forcing) = 0;
+
+  /// Residual at the current unknowns, every row dimensionless. Also updates everything observe()
+  /// reads.
+  virtual RodResidual evaluate(const Port& base, const Port& tip) = 0;
+
+  /// Linearisation at the point of the last evaluate(). @return false if some local system is
+  /// singular.
+  virtual bool linearize(const Port& base, const Port& tip, CondensedRod& out) = 0;
+
+  /// Newton direction of the rod's own unknowns for given outer increments.
+  virtual void set_direction(const Vec6& z, const Vec6& zeta_A) = 0;
+  /// Remembers the unknowns; move() then sets them to the remembered ones plus alpha times the
+  /// direction.
+  virtual void keep() = 0;
+  virtual void move(double alpha) = 0;
+
+  /// Wrench (moment, force) on the bodies at the current state.
+  virtual Vec6 wrench_on_base(const Port& base) const = 0;
+  virtual Vec6 wrench_on_tip(const Port& tip) const = 0;
+
+  /// Remembers by how much the joints gape at the last evaluate(); hold_gap() then leaves that
+  /// fraction of it open.
+  virtual void capture_gap(const Port& base, const Port& tip) = 0;
+  virtual void hold_gap(double fraction) = 0;
+  virtual void mark_positions() = 0;  ///< origin of the relaxation drag
+
+  /// Coordinates that the time scheme integrates; fill_tracks() writes the current stage's values.
+  virtual std::vector<Track*> tracks() = 0;
+  virtual void fill_tracks() = 0;
+  virtual void accept_tracks() = 0;  ///< new reference rotations after an accepted step
+  virtual void start_tracks() = 0;   ///< at rest where it now is
+
+  /// All unknowns as a copyable value, to retry a step or to extrapolate.
+  struct Unknowns {
+    VecX values;
+    std::vector<NodeState> starts;
+  };
+
+  virtual Unknowns unknowns() const = 0;
+  virtual void set_unknowns(const Unknowns& u) = 0;
+  /// Sum of weighted past unknowns (weights sum to 1).
+  virtual void predict(const std::vector<const Unknowns*>& past,
+                       const std::vector<double>& weights) = 0;
+
+  virtual RodSample observe() const = 0;
+  virtual RodEnergy energy() const = 0;
+  virtual std::string row_name(int row) const = 0;
+
+  virtual int cells() const = 0;
+  virtual int segments() const = 0;
+  virtual int unknown_count() const = 0;
+  virtual long section_evaluations() const = 0;
+  virtual double growth_exponent() const = 0;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an observer sees of a rod: points along it with pose, motion, wrench and strain. Plain data.
+#pragma once
+
+#include <vector>
+
+#include "engine/math/types.h"
+
+namespace cprsim {
+
+/// One point of a rod. The internal wrench is what the part beyond s exerts on the part before s.
+struct RodPoint {
+  double s = 0;  ///< fraction of the length, 0 base .. 1 tip
+  Vec3 position{0, 0, 0};
+  Mat3 rotation = Mat3::Identity();                 ///< section to world, z = tangent
+  Vec3 velocity{0, 0, 0};                           ///< at fixed s, world axes
+  Vec3 force{0, 0, 0}, moment{0, 0, 0};             ///< n, m, world axes
+  Vec3 curvature{0, 0, 0}, shear_stretch{0, 0, 1};  ///< u, v, section axes
+};
+
+struct RodSample {
+  double length = 0;
+  double radius = 0;             ///< half the section's largest dimension, for drawing
+  std::vector<RodPoint> points;  ///< base → tip, s ascending, first s = 0 and last s = 1
+};
+
+}  // namespace cprsim

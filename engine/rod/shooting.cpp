@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Setting up, coefficients of a solve, and the residual sweep; equations in engine/rod/cell.h.
+#include "engine/rod/shooting.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "engine/math/so3.h"
+
+namespace cprsim {
+namespace {
+
+// Nodes: the stations, and between them cells as equal as the count allows.
+std::vector<double> make_grid(int cells, std::vector<double> stations) {
+  std::sort(stations.begin(), stations.end());
+  std::vector<double> ends{0};
+  for (double s : stations)
+    if (s > ends.back() + 1e-9 && s < 1 - 1e-9) ends.push_back(s);
+  ends.push_back(1);
+  std::vector<double> grid{0};
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    const double piece = ends[i] - ends[i - 1];
+    const int n = std::max(1, static_cast<int>(std::lround(cells * piece)));
+    for (int k = 1; k <= n; ++k)
+      grid.push_back(k == n ? ends[i] : ends[i - 1] + piece * k / n);
+  }
+  return grid;
+}
+
+constexpr double kSegmentGrowth = 6;  // e^6 eps stays far below any tolerance; design section 5
+
+}  // namespace
+
+double growth_exponent(const SectionProperties& section, const Vec3& K_bt, const Vec3& K_se,
+                       double length, double k, double N) {
+  const double EI = std::min(K_bt.x(), K_bt.y());
+  double gamma = length * std::pow(k / EI, 0.25) / std::sqrt(2.0);
+  gamma = std::max(gamma, length * std::sqrt(N / EI));
+  for (int i = 0; i < 3; ++i)
+    if (K_se[i] > 0) gamma = std::max(gamma, length * std::sqrt(k / K_se[i]));
+  if (section.rhoA > 0)
+    gamma = std::max(gamma, length * std::sqrt(k / section.rhoA * section.rhoJ.z() / K_bt.z()));
+  return gamma;
+}
+
+ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip,
+                         const SectionProperties& section, double length,
+                         const ShootingOptions& options)
+    : name_(std::move(name)),
+      base_(base),
+      tip_(tip),
+      section_(section),
+      options_(options),
+      table_(&arc_tableau(options.integrator)),
+      grid_(make_grid(options.cells, options.stations)) {
+  cells_ = static_cast<int>(grid_.size()) - 1;
+  extensible_ = options.extension || options.shear;
+  const auto n = static_cast<std::size_t>(cells_ * table_->stages);
+  stages_.assign(n, CellStage{});
+  nodes_.assign(grid_.size(), NodeState{});
+  starts_.assign(1, NodeState{});
+  segment_first_ = {0, static_cast<std::size_t>(cells_)};
+  for (double s : options_.stations) {
+    const auto at = std::min_element(grid_.begin(), grid_.end(), [s](double a, double b) {
+      return std::abs(a - s) < std::abs(b - s);
+    });
+    load_at_.push_back(static_cast<std::size_t>(at - grid_.begin()));
+  }
+  const auto points = static_cast<Eigen::Index>(n + grid_.size());
+  const auto strains = static_cast<Eigen::Index>(options_.damping ? n * (extensible_ ? 2 : 1) : 0);
+  track_.resize(3 * (points + strains));
+  if (options_.rotary_inertia) rotation_track_.resize(3 * static_cast<Eigen::Index>(n));
+  reference_rotations_.assign(9 * n, 0);
+  forcing_.length = length;
+  set_straight(Pose{});
+}
+
+void ShootingRod::set_straight(const Pose& X_WBase) {
+  NodeState state{};
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.R) = X_WBase.R;
+  Eigen::Map<Vec3>(state.p) = X_WBase.p;
+  starts_.assign(1, state);
+  segment_first_ = {0, static_cast<std::size_t>(cells_)};
+  for (CellStage& stage : stages_) {
+    stage = CellStage{};
+    stage.v[2] = 1;
+  }
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    nodes_[k] = state;
+    Eigen::Map<Vec3>(nodes_[k].p) += X_WBase.R.col(2) * (grid_[k] * forcing_.length);
+  }
+  evaluated_ = false;
+}
+
+Vec3 ShootingRod::compliance_bt() const {
+  Vec3 K = section_.K_bt;
+  if (options_.damping) K += rates_.c_v * section_.B_bt;
+  return K.cwiseInverse();
+}
+
+// Rigid modes are zeros: shear and extension each only if the scene lists them.
+Vec3 ShootingRod::compliance_se() const {
+  Vec3 C = Vec3::Zero();
+  const Vec3 B = options_.damping ? section_.B_se : Vec3(Vec3::Zero());
+  if (options_.shear) {
+    C.x() = 1 / (section_.K_se.x() + rates_.c_v * B.x());
+    C.y() = 1 / (section_.K_se.y() + rates_.c_v * B.y());
+  }
+  if (options_.extension) C.z() = 1 / (section_.K_se.z() + rates_.c_v * B.z());
+  C.z() += forcing_.axial_softness * forcing_.length * forcing_.length /
+           section_.K_bt.head<2>().maxCoeff();
+  return C;
+}
+
+void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
+  rates_ = rates;
+  forcing_ = forcing;
+  assert(forcing_.loads.size() == load_at_.size());
+  const double L = forcing_.length;
+  model_.table = table_;
+  Eigen::Map<Vec3>(model_.C_bt) = compliance_bt();
+  Eigen::Map<Vec3>(model_.C_se) = compliance_se();
+  model_.k = section_.rhoA * rates.c_v * rates.c_w + forcing_.relaxation;
+  model_.rotary = options_.rotary_inertia && rates.dynamic();
+  Eigen::Map<Vec3>(model_.rhoJ) = section_.rhoJ;
+  model_.c_v = rates.c_v;
+  model_.c_w = rates.c_w;
+  model_.body_rates = rates.body_rates;
+  const bool stretches = extensible_ || forcing.axial_softness > 0;
+  law_ = !stretches      ? CellLaw::kKirchhoff
+         : model_.k == 0 ? CellLaw::kExtensibleStatic
+                         : CellLaw::kExtensible;
+  kernel_ = &cell_kernel(table_->stages, law_);
+
+  const double EI = std::max(section_.K_bt.x(), section_.K_bt.y());
+  scale_ = {L, EI / (L * L), EI / L};
+  // positions carry round-off eps L; inertia turns it into forces eps k L²
+  constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
+  noise_ = std::max(1.0, kRoundOff * model_.k * std::pow(L, 4) / (EI * forcing_.tolerance));
+  update_stage_inputs();
+  choose_segments();
+}
+
+void ShootingRod::update_stage_inputs() {
+  const Vec3 K_rest = Vec3::Zero();  // K_bt u*, straight rest shape
+  const auto n = static_cast<Eigen::Index>(stage_count());
+  const auto strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
+  const Vec3 C_bt = compliance_bt(), C_se = compliance_se();
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    CellStage& stage = stages_[j];
+    const auto i = 3 * static_cast<Eigen::Index>(j);
+    Vec3 b = -section_.rhoA * forcing_.gravity;
+    Vec3 u0 = C_bt.cwiseProduct(K_rest), v0(0, 0, 1);
+    if (rates_.dynamic()) {
+      b += section_.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
+      if (options_.damping) {
+        u0 -= C_bt.cwiseProduct(section_.B_bt.cwiseProduct(track_.x_h.segment<3>(strains + i)));
+        // v0 = C (K z - B v_h): with C = 1/(K + c_v B) this is z - C B (c_v z + v_h)
+        if (extensible_)
+          v0 -= C_se.cwiseProduct(section_.B_se.cwiseProduct(
+              rates_.c_v * Vec3(0, 0, 1) + track_.x_h.segment<3>(strains + 3 * n + i)));
+      }
+      if (model_.rotary) {
+        std::copy_n(&reference_rotations_[9 * j], 9, stage.R_start);
+        Eigen::Map<Vec3>(stage.theta_h) = rotation_track_.x_h.segment<3>(i);
+        Eigen::Map<Vec3>(stage.omega_h) = rotation_track_.v_h.segment<3>(i);
+      }
+    }
+    if (forcing_.relaxation > 0) b -= forcing_.relaxation * marked_[j];
+    Eigen::Map<Vec3>(stage.b) = b;
+    Eigen::Map<Vec3>(stage.u0) = u0;
+    Eigen::Map<Vec3>(stage.v0) = v0;
+  }
+}
+
+// Segments from the growth exponent; cells are shared out evenly. Starts move to the nodes last
+// reached.
+void ShootingRod::choose_segments() {
+  Vec3 K_bt =
+      model_.C_bt[0] > 0 ? Vec3(Eigen::Map<const Vec3>(model_.C_bt).cwiseInverse()) : section_.K_bt;
+  Vec3 K_se = Vec3::Zero();
+  for (int i = 0; i < 3; ++i)
+    if (model_.C_se[i] > 0) K_se[i] = 1 / model_.C_se[i];
+  double N = force_of(starts_.front()).norm();
+  if (evaluated_)
+    for (const NodeState& node : nodes_)
+      N = std::max(N, force_of(node).norm());
+  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k, N);
+  const double layer = forcing_.length / std::max(1.0, growth_);
+  const double EI = scale_.moment * scale_.length;
+  port_scale_ = {layer, EI / (layer * layer), EI / layer};
+  const int wanted = std::clamp(static_cast<int>(std::ceil(growth_ / kSegmentGrowth)), 1, cells_);
+  // before the first evaluation there are no states to start segments from
+  if (wanted == segments() || !evaluated_) return;
+  // fewer segments only if clearly fewer do: keeps warm starts
+  if (wanted < segments() && 2 * wanted > segments()) return;
+  const NodeState base = starts_.front();
+  segment_first_.assign(static_cast<std::size_t>(wanted) + 1, 0);
+  starts_.assign(static_cast<std::size_t>(wanted), base);
+  for (int g = 0; g <= wanted; ++g)
+    segment_first_[static_cast<std::size_t>(g)] = static_cast<std::size_t>(cells_ * g / wanted);
+  for (std::size_t g = 1; g < starts_.size(); ++g)
+    starts_[g] = nodes_[segment_first_[g]];
+}
+
+void ShootingRod::apply_load(std::size_t node, NodeState& state) const {
+  for (std::size_t i = 0; i < load_at_.size(); ++i) {
+    if (load_at_[i] != node) continue;
+    const PointLoad& load = forcing_.loads[i];
+    const Mat3 R = load.follower ? Mat3(rotation_of(state)) : Mat3(Mat3::Identity());
+    Eigen::Map<Vec3>(state.n) -= R * load.force;
+    Eigen::Map<Vec3>(state.m) -= R * load.torque;
+  }
+}
+
+RodResidual& ShootingRod::add_row(RodResidual& r, double value, int row) const {
+  r.sum_squares += value * value;
+  const double size = std::abs(value);
+  if (!std::isfinite(value)) r.finite = false;
+  if (size > r.largest || !std::isfinite(value)) {
+    r.largest = std::isfinite(value) ? size : std::numeric_limits<double>::infinity();
+    r.worst_row = row;
+  }
+  return r;
+}
+
+RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
+  const auto S = static_cast<std::size_t>(table_->stages);
+  RodResidual r;
+  int row = 0;
+  auto add = [&](const Vec6& values) {
+    for (int i = 0; i < 6; ++i)
+      add_row(r, values[i], row++);
+  };
+  RodScale loose = scale_;
+  loose.force *= noise_;
+  loose.moment *= noise_;
+  add(base_.value(starts_.front(), base, loose) - base_gap_);
+
+  NodeState state = starts_.front();
+  apply_load(0, state);
+  nodes_[0] = state;
+  for (std::size_t g = 0; g + 1 < segment_first_.size(); ++g) {
+    if (g > 0) {
+      // continuity between what the last segment reached and where this one starts
+      const NodeState& start = starts_[g];
+      Vec6 pose, wrench;
+      pose << log_so3(rotation_of(state) * rotation_of(start).transpose()),
+          (position_of(state) - position_of(start)) / scale_.length;
+      wrench << (force_of(state) - force_of(start)) / loose.force,
+          (moment_of(state) - moment_of(start)) / loose.moment;
+      add(pose);
+      add(wrench);
+      state = start;
+    }
+    for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
+      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+      NodeState end;
+      kernel_->evaluate(model_, &stages_[c * S], state, end);
+      apply_load(c + 1, end);
+      nodes_[c + 1] = state = end;
+    }
+  }
+  section_evaluations_ += static_cast<long>(stages_.size());
+  for (const CellStage& stage : stages_) {
+    for (double u : stage.residual_u)
+      add_row(r, u * scale_.length / noise_, row++);
+    if (law_ == CellLaw::kExtensible)
+      for (double v : stage.residual_v)
+        add_row(r, v / noise_, row++);
+  }
+  add(tip_.value(state, tip, loose) - tip_gap_);
+  evaluated_ = r.finite;
+  return r;
+}
+
+std::string ShootingRod::row_name(int row) const {
+  if (row < 6) return std::string("base of ") + name_ + ", " + base_.row_name(row);
+  row -= 6;
+  const int joins = 12 * (segments() - 1);
+  if (row < joins) return "join " + std::to_string(row / 12 + 1) + " between segments of " + name_;
+  row -= joins;
+  const int law = static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 6 : 3);
+  if (row < law) {
+    const int stage = row / (law_ == CellLaw::kExtensible ? 6 : 3);
+    const int cell = stage / table_->stages;
+    return "strain law of " + name_ + " in cell " + std::to_string(cell + 1) + " of " +
+           std::to_string(cells_);
+  }
+  return std::string("tip of ") + name_ + ", " + tip_.row_name(row - law);
+}
+
+int ShootingRod::unknown_count() const {
+  return 12 * segments() +
+         static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 6 : 3);
+}
+
+}  // namespace cprsim

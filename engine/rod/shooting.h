@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Multiple shooting on a rod. The rod is cut into cells (engine/rod/cell.h), cells into segments.
+// Unknowns: pose and wrench at each segment's start, and the strain rates of all stages, which are
+// eliminated cell by cell during the sweep. One sweep base → tip gives the residual and the exact
+// variational equations.
+//
+// Elimination across segments never multiplies transition matrices. At each segment's end the six
+// columns that still answer for unknowns are orthonormalised and the particular columns made
+// orthogonal to them (Godunov, Uspekhi Mat. Nauk 16, 1961; Conte, SIAM Review 8, 1966); the
+// unknowns of earlier segments follow from later ones by triangular back-substitution, in which
+// growing modes decay. Segments are so many that none amplifies more than e^6.
+//
+// The grid of cells does not follow the time step: Gauss collocation is symmetric, so growing and
+// decaying solutions stay apart on any grid.
+//
+// A length drive feeds the rod through its base: the grid scales with the length, and inertia and
+// damping see the motion at fixed s / L (quasi-static feed: the convective terms of order L_t are
+// left out).
+#pragma once
+
+#include <memory>
+
+#include "engine/rod/rod_model.h"
+#include "engine/section/section.h"
+
+namespace cprsim {
+
+struct ShootingOptions {
+  ArcIntegrator integrator = ArcIntegrator::kGauss4;
+  int cells = 10;
+  bool extension = false, shear = false;  ///< effects that change the law
+  bool rotary_inertia = false, damping = false;
+  std::vector<double> stations;  ///< s of point loads: grid nodes are placed there
+};
+
+/// Largest growth of the arc-length problem over a rod of length L (design section 5): bending, and
+/// with k = rho A c_v c_w the inertia coefficient in N/m²; N is the largest internal force.
+double growth_exponent(const SectionProperties& section, const Vec3& K_bt, const Vec3& K_se,
+                       double length, double k, double N);
+
+class ShootingRod final : public RodModel {
+ public:
+  ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip,
+              const SectionProperties& section, double length, const ShootingOptions& options);
+
+  /// Straight and unloaded from the base frame.
+  void set_straight(const Pose& X_WBase);
+
+  void prepare(const StageRates& rates, const RodForcing& forcing) override;
+  RodResidual evaluate(const Port& base, const Port& tip) override;
+  bool linearize(const Port& base, const Port& tip, CondensedRod& out) override;
+  void set_direction(const Vec6& z, const Vec6& zeta_A) override;
+  void keep() override;
+  void move(double alpha) override;
+  Vec6 wrench_on_base(const Port& base) const override;
+  Vec6 wrench_on_tip(const Port& tip) const override;
+  void capture_gap(const Port& base, const Port& tip) override;
+  void hold_gap(double fraction) override;
+  void mark_positions() override;
+  std::vector<Track*> tracks() override;
+  void fill_tracks() override;
+  void accept_tracks() override;
+  void start_tracks() override;
+  Unknowns unknowns() const override;
+  void set_unknowns(const Unknowns& u) override;
+  void predict(const std::vector<const Unknowns*>& past,
+               const std::vector<double>& weights) override;
+  RodSample observe() const override;
+  RodEnergy energy() const override;
+  std::string row_name(int row) const override;
+
+  int cells() const override { return cells_; }
+
+  int segments() const override { return static_cast<int>(segment_first_.size()) - 1; }
+
+  int unknown_count() const override;
+
+  long section_evaluations() const override { return section_evaluations_; }
+
+  double growth_exponent() const override { return growth_; }
+
+  /// State at node k (after any load there); base state before it. For tests and observation.
+  const NodeState& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
+
+  const NodeState& base_state() const { return starts_.front(); }
+
+ private:
+  using Columns =
+      std::vector<double>;  ///< 12 × columns, row-major, 64-byte aligned blocks not required
+
+  void choose_segments();
+  void apply_load(std::size_t node, NodeState& state) const;
+  void apply_load_columns(std::size_t node, const NodeState& state, double* Y) const;
+  void start_columns(const Port& base, double* Y) const;
+  bool sweep_columns(const Port& base);
+  void orthonormalize(std::size_t segment, const NodeState& reached, double* Y);
+  void close_tip(const Port& tip, const double* Y, CondensedRod& out) const;
+  void close_base(const Port& base, CondensedRod& out) const;
+  RodResidual& add_row(RodResidual& r, double value, int row) const;
+  Vec3 compliance_bt() const;
+  Vec3 compliance_se() const;
+  void update_stage_inputs();
+
+  std::size_t stage_count() const { return stages_.size(); }
+
+  std::string name_;
+  RodEnd base_, tip_;
+  SectionProperties section_;
+  ShootingOptions options_;
+  const ArcTableau* table_;
+  int cells_ = 0;
+  bool extensible_ = false;
+  std::vector<double> grid_;  ///< node positions s / L, cells_ + 1
+  CellLaw law_ = CellLaw::kKirchhoff;
+  const CellKernel* kernel_ = nullptr;
+
+  // coefficients of the current solve
+  CellModel model_;
+  StageRates rates_;
+  RodForcing forcing_;
+  RodScale scale_;       ///< L, EI/L², EI/L
+  RodScale port_scale_;  ///< the same with the boundary layer's length, for orthonormalisation
+  double noise_ = 1;     ///< row scales grow by this where round-off exceeds the tolerance
+  double growth_ = 0;
+
+  // unknowns and what the last evaluation found
+  std::vector<CellStage> stages_;  ///< cells × stages
+  std::vector<NodeState> starts_;  ///< segment starts; [0] is the base, before any load there
+  std::vector<NodeState> nodes_;   ///< grid nodes as reached
+  std::vector<std::size_t>
+      segment_first_;                 ///< first cell of each segment, then the number of cells
+  std::vector<std::size_t> load_at_;  ///< node of forcing_.loads[i]
+  Vec6 tip_gap_ = Vec6::Zero(), base_gap_ = Vec6::Zero();              ///< left open now
+  Vec6 tip_gap_start_ = Vec6::Zero(), base_gap_start_ = Vec6::Zero();  ///< as captured
+  std::vector<Vec3> marked_;
+  bool evaluated_ = false;
+
+  // linearisation
+  int columns_ = kNarrow;
+  std::vector<Columns> segment_start_columns_;
+  Columns cell_directions_;  ///< lifted × columns per cell
+
+  struct Recombination {
+    Mat6 R, G_A;
+    Vec6 g;
+  };
+
+  std::vector<Recombination> recombinations_;
+  double transition_ = 0;
+
+  // direction and remembered unknowns
+  std::vector<Vec12> start_direction_;
+  std::vector<double> lifted_direction_;
+  std::vector<NodeState> kept_starts_;
+  std::vector<double> kept_lifted_;
+
+  Track track_;
+  Track rotation_track_{Track::Kind::kRotation};
+  std::vector<double> reference_rotations_;  ///< 9 per stage
+  long section_evaluations_ = 0;
+};
+
+}  // namespace cprsim

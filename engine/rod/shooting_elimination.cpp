@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The variational sweep and the stable elimination of everything between a rod's ends.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/math/so3.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+namespace {
+
+using RowMajor12 = Eigen::Matrix<double, 12, Eigen::Dynamic, Eigen::RowMajor>;
+using ColumnsMap = Eigen::Map<RowMajor12>;
+using ConstColumnsMap = Eigen::Map<const RowMajor12>;
+using Mat12x6 = Eigen::Matrix<double, 12, 6>;
+
+/// Column of the affine part.
+int affine_column(int columns) {
+  return columns == kNarrow ? 6 : 12;
+}
+
+Vec12 state_units(const RodScale& s) {
+  Vec12 d;
+  d << Vec3::Ones(), Vec3::Constant(s.length), Vec3::Constant(s.force), Vec3::Constant(s.moment);
+  return d;
+}
+
+/// The body's motion seen at the joint: phi_J = phi, dp_J = dp + phi × arm.
+Mat6 carried_to(const Vec3& arm) {
+  Mat6 C = Mat6::Identity();
+  C.block<3, 3>(3, 0) = -hat(arm);
+  return C;
+}
+
+}  // namespace
+
+// Columns of the state at the base: what the joint leaves free (six z), the base body's motion, the
+// joint's gap.
+void ShootingRod::start_columns(const Port& base, double* Y0) const {
+  ColumnsMap Y(Y0, 12, columns_);
+  Y.setZero();
+  const int affine = affine_column(columns_);
+  const NodeState& start = starts_.front();
+  if (base_.fixed()) {
+    const Mat3 Q = base.R.transpose() * Mat3(rotation_of(start));
+    const Vec3 gap = base_gap_.head<3>() * scale_.length;
+    Y.block<3, 1>(0, affine) = -(base.R * (log_so3(Q) - base_gap_.tail<3>()));
+    Y.block<3, 1>(3, affine) = base.p + base.R * gap - position_of(start);
+    Y.block<3, 3>(6, 0).diagonal().setConstant(port_scale_.force);
+    Y.block<3, 3>(9, 3).diagonal().setConstant(port_scale_.moment);
+    if (columns_ == kWide) Y.block<6, 6>(0, 6) = carried_to(base.arm);
+    return;
+  }
+  const EndRows rows = base_.rows(start, base, scale_);
+  const Vec12 d = state_units(scale_);
+  const Mat12x6 Bt = (rows.by_state * d.asDiagonal()).transpose();
+  Eigen::HouseholderQR<Mat12x6> qr(Bt);
+  Mat12 Q = qr.householderQ();
+  const Mat6 Rt = Mat6(qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>()).transpose();
+  const auto lower = Rt.triangularView<Eigen::Lower>();
+  // B y + by_body zeta + value = 0  =>  y = Q2 z - Q1 R^-T (by_body zeta + value)
+  Y.leftCols<6>() = d.asDiagonal() * Q.rightCols<6>();
+  Y.col(affine) = -(d.asDiagonal() * (Q.leftCols<6>() * lower.solve(rows.value - base_gap_)));
+  if (columns_ == kWide)
+    Y.middleCols<6>(6) = -(d.asDiagonal() * (Q.leftCols<6>() * lower.solve(rows.by_body)));
+}
+
+// A follower load turns with its section: d(R F) = phi × R F.
+void ShootingRod::apply_load_columns(std::size_t node, const NodeState& state, double* Y0) const {
+  for (std::size_t i = 0; i < load_at_.size(); ++i) {
+    const PointLoad& load = forcing_.loads[i];
+    if (load_at_[i] != node || !load.follower) continue;
+    const Mat3 R = rotation_of(state);
+    ColumnsMap Y(Y0, 12, columns_);
+    const RowMajor12 phi = Y.topRows<3>().replicate(1, 1).eval();
+    Y.middleRows<3>(6) += hat(R * load.force) * phi.topRows<3>();
+    Y.middleRows<3>(9) += hat(R * load.torque) * phi.topRows<3>();
+  }
+}
+
+// At a segment's end: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are
+// z' = R z + G_A zeta_A + g, and the particular columns keep only what is orthogonal to Q.
+void ShootingRod::orthonormalize(std::size_t segment, const NodeState& reached, double* Y0) {
+  ColumnsMap Y(Y0, 12, columns_);
+  const int affine = affine_column(columns_);
+  const NodeState& start = starts_[segment + 1];
+  Vec12 mismatch;
+  mismatch << log_so3(rotation_of(reached) * rotation_of(start).transpose()),
+      position_of(reached) - position_of(start), force_of(reached) - force_of(start),
+      moment_of(reached) - moment_of(start);
+  Y.col(affine) += mismatch;
+  const Vec12 d = state_units(port_scale_);
+  Y = d.cwiseInverse().asDiagonal() * Y;
+  Mat12x6 Y_z = Y.leftCols<6>();
+  transition_ = std::max(transition_, Y_z.cwiseAbs().maxCoeff());
+  Eigen::HouseholderQR<Mat12x6> qr(Y_z);
+  const Mat12x6 Q = qr.householderQ() * Mat12x6::Identity();
+  Recombination& rec = recombinations_[segment];
+  rec.R = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>();
+  rec.g = Q.transpose() * Y.col(affine);
+  Y.col(affine) -= Q * rec.g;
+  rec.G_A.setZero();
+  if (columns_ == kWide) {
+    rec.G_A = Q.transpose() * Y.middleCols<6>(6);
+    Y.middleCols<6>(6) -= Q * rec.G_A;
+  }
+  Y.leftCols<6>() = Q;
+  Y = d.asDiagonal() * Y;
+}
+
+bool ShootingRod::sweep_columns(const Port& base) {
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto width = static_cast<std::size_t>(columns_);
+  const auto M = static_cast<std::size_t>(segments());
+  const auto linearize = columns_ == kNarrow ? kernel_->linearize_narrow : kernel_->linearize_wide;
+  segment_start_columns_.resize(M);
+  recombinations_.resize(M);
+  cell_directions_.resize(static_cast<std::size_t>(cells_) * lifted * width);
+  transition_ = 0;
+  alignas(64) double Y[12 * kWide];
+  start_columns(base, Y);
+  for (std::size_t g = 0; g < M; ++g) {
+    segment_start_columns_[g].assign(Y, Y + 12 * width);
+    if (g == 0) apply_load_columns(0, starts_.front(), Y);
+    for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
+      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+      const NodeState& start = g > 0 && c == segment_first_[g] ? starts_[g] : nodes_[c];
+      if (!linearize(model_, &stages_[c * S], start, nodes_[c + 1], Y,
+                     &cell_directions_[c * lifted * width]))
+        return false;
+      apply_load_columns(c + 1, nodes_[c + 1], Y);
+    }
+    if (g + 1 < M) orthonormalize(g, nodes_[segment_first_[g + 1]], Y);
+  }
+  // the last segment's columns are left behind the starts
+  segment_start_columns_.emplace_back(Y, Y + 12 * width);
+  return true;
+}
+
+bool ShootingRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  columns_ = base.moves ? kWide : kNarrow;
+  if (!sweep_columns(base)) return false;
+  close_tip(tip, segment_start_columns_.back().data(), out);
+  close_base(base, out);
+  out.growth = transition_;
+  return true;
+}
+
+// The tip's six rows in terms of z and the bodies, and the wrench on the tip's body.
+void ShootingRod::close_tip(const Port& tip, const double* Y0, CondensedRod& out) const {
+  const ConstColumnsMap Y(Y0, 12, columns_);
+  const int affine = affine_column(columns_);
+  const NodeState& end = nodes_.back();
+  const EndRows rows = tip_.rows(end, tip, scale_);
+  out.T = rows.by_state * Y.leftCols<6>();
+  out.t = rows.value - tip_gap_ + rows.by_state * Y.col(affine);
+  out.T_B = rows.by_body;
+  out.T_A.setZero();
+  if (columns_ == kWide) out.T_A = rows.by_state * Y.middleCols<6>(6);
+  out.WB_z.setZero();
+  out.WB_A.setZero();
+  out.WB_B.setZero();
+  out.wb.setZero();
+  if (!tip_.held()) return;
+  // on the body: force -n, moment -(m + r × n), r from the body's reference point to the rod's end
+  const Vec3 n = force_of(end);
+  const Vec3 r = position_of(end) - tip.p + tip.arm;
+  Mat6x12 W = Mat6x12::Zero();
+  W.block<3, 3>(0, 3) = hat(n);
+  W.block<3, 3>(0, 6) = -hat(r);
+  W.block<3, 3>(0, 9) = -Mat3::Identity();
+  W.block<3, 3>(3, 6) = -Mat3::Identity();
+  out.WB_z = W * Y.leftCols<6>();
+  if (columns_ == kWide) out.WB_A = W * Y.middleCols<6>(6);
+  out.WB_B.block<3, 3>(0, 3) = -hat(n);
+  out.wb = wrench_on_tip(tip) + W * Y.col(affine);
+}
+
+// The wrench on the base's body needs z at the first segment: back through the recombinations.
+void ShootingRod::close_base(const Port& base, CondensedRod& out) const {
+  out.WA_z.setZero();
+  out.WA_A.setZero();
+  out.wa.setZero();
+  if (!base_.held() || !base.moves) return;
+  Mat6 Z = Mat6::Identity(), Z_A = Mat6::Zero();
+  Vec6 z0 = Vec6::Zero();
+  for (int g = segments() - 2; g >= 0; --g) {
+    const Recombination& rec = recombinations_[static_cast<std::size_t>(g)];
+    const auto R = rec.R.triangularView<Eigen::Upper>();
+    Z = R.solve(Z).eval();
+    Z_A = R.solve(Z_A - rec.G_A).eval();
+    z0 = R.solve(z0 - rec.g).eval();
+  }
+  const ConstColumnsMap Y(segment_start_columns_.front().data(), 12, columns_);
+  const NodeState& start = starts_.front();
+  const Vec3 n = force_of(start);
+  const Vec3 r = position_of(start) - base.p + base.arm;
+  Mat6x12 W = Mat6x12::Zero();
+  W.block<3, 3>(0, 3) = -hat(n);
+  W.block<3, 3>(0, 6) = hat(r);
+  W.block<3, 3>(0, 9) = Mat3::Identity();
+  W.block<3, 3>(3, 6) = Mat3::Identity();
+  const Eigen::Matrix<double, 6, 6> W_z = W * Y.leftCols<6>();
+  out.WA_z = W_z * Z;
+  out.WA_A = W * Y.middleCols<6>(6) + W_z * Z_A;
+  out.WA_A.block<3, 3>(0, 3) += hat(n);
+  out.wa = wrench_on_base(base) + W * Y.col(affine_column(columns_)) + W_z * z0;
+}
+
+Vec6 ShootingRod::wrench_on_base(const Port& base) const {
+  const NodeState& start = starts_.front();
+  const Vec3 r = position_of(start) - base.p + base.arm;
+  Vec6 w;
+  w << moment_of(start) + r.cross(force_of(start)), force_of(start);
+  return w;
+}
+
+Vec6 ShootingRod::wrench_on_tip(const Port& tip) const {
+  const NodeState& end = nodes_.back();
+  const Vec3 r = position_of(end) - tip.p + tip.arm;
+  Vec6 w;
+  w << -(moment_of(end) + r.cross(force_of(end))), -force_of(end);
+  return w;
+}
+
+void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
+  const auto M = static_cast<std::size_t>(segments());
+  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto width = static_cast<std::size_t>(columns_);
+  const int affine = affine_column(columns_);
+  start_direction_.resize(M);
+  lifted_direction_.resize(static_cast<std::size_t>(cells_) * lifted);
+  Vec6 z_g = z;
+  VecX weights = VecX::Zero(columns_);
+  for (std::size_t g = M; g-- > 0;) {
+    if (g + 1 < M) {
+      const Recombination& rec = recombinations_[g];
+      z_g = rec.R.triangularView<Eigen::Upper>().solve(z_g - rec.G_A * zeta_A - rec.g).eval();
+    }
+    weights.head<6>() = z_g;
+    if (columns_ == kWide) weights.segment<6>(6) = zeta_A;
+    weights[affine] = 1;
+    start_direction_[g] = ConstColumnsMap(segment_start_columns_[g].data(), 12, columns_) * weights;
+    for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
+      const double* D = &cell_directions_[c * lifted * width];
+      for (std::size_t i = 0; i < lifted; ++i) {
+        double sum = 0;
+        for (std::size_t k = 0; k < width; ++k)
+          sum += D[i * width + k] * weights[static_cast<Eigen::Index>(k)];
+        lifted_direction_[c * lifted + i] = sum;
+      }
+    }
+  }
+}
+
+void ShootingRod::keep() {
+  kept_starts_ = starts_;
+  kept_lifted_.resize(6 * stages_.size());
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    std::copy_n(stages_[j].w, 3, &kept_lifted_[6 * j]);
+    std::copy_n(stages_[j].v, 3, &kept_lifted_[6 * j + 3]);
+  }
+}
+
+void ShootingRod::move(double alpha) {
+  for (std::size_t g = 0; g < starts_.size(); ++g) {
+    const Vec12 d = alpha * start_direction_[g];
+    NodeState& s = starts_[g];
+    const NodeState& kept = kept_starts_[g];
+    const Mat3 R = exp_so3(d.head<3>()) * Mat3(rotation_of(kept));
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.R) = orthonormalized(R);
+    Eigen::Map<Vec3>(s.p) = position_of(kept) + d.segment<3>(3);
+    Eigen::Map<Vec3>(s.n) = force_of(kept) + d.segment<3>(6);
+    Eigen::Map<Vec3>(s.m) = moment_of(kept) + d.segment<3>(9);
+  }
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const double* d = &lifted_direction_[j / S * lifted + 3 * (j % S)];
+    for (std::size_t i = 0; i < 3; ++i)
+      stages_[j].w[i] = kept_lifted_[6 * j + i] + alpha * d[i];
+    if (law_ == CellLaw::kExtensible)
+      for (std::size_t i = 0; i < 3; ++i)
+        stages_[j].v[i] = kept_lifted_[6 * j + 3 + i] + alpha * d[3 * S + i];
+  }
+}
+
+}  // namespace cprsim

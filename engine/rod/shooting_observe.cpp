@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a shooting rod shows to time schemes, predictors and observers.
+#include <algorithm>
+#include <cassert>
+
+#include "engine/math/so3.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+namespace {
+
+using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Eigen::Map<const Vec3> vec(const double* p) {
+  return Eigen::Map<const Vec3>(p);
+}
+
+/// Linear through the stage values of a cell, at fraction x of it.
+Vec3 along_cell(const CellStage* stages, const ArcTableau& table,
+                const double (CellStage::*value)[3], double x) {
+  const int last = table.stages - 1;
+  const Vec3 a = vec(stages[0].*value);
+  if (last == 0 || table.c[last] == table.c[0]) return a;
+  const double f = (x - table.c[0]) / (table.c[last] - table.c[0]);
+  return (1 - f) * a + f * vec(stages[last].*value);
+}
+
+}  // namespace
+
+void ShootingRod::capture_gap(const Port& base, const Port& tip) {
+  // a free end has no joint that could gape
+  if (base_.held()) base_gap_start_ = base_.value(starts_.front(), base, scale_);
+  if (tip_.held()) tip_gap_start_ = tip_.value(nodes_.back(), tip, scale_);
+}
+
+void ShootingRod::hold_gap(double fraction) {
+  base_gap_ = fraction * base_gap_start_;
+  tip_gap_ = fraction * tip_gap_start_;
+}
+
+void ShootingRod::mark_positions() {
+  marked_.resize(stages_.size());
+  for (std::size_t j = 0; j < stages_.size(); ++j)
+    marked_[j] = vec(stages_[j].p);
+}
+
+std::vector<Track*> ShootingRod::tracks() {
+  std::vector<Track*> all{&track_};
+  if (options_.rotary_inertia) all.push_back(&rotation_track_);
+  return all;
+}
+
+void ShootingRod::fill_tracks() {
+  Eigen::Index i = 0;
+  auto put = [&](const double* value) {
+    track_.x.segment<3>(i) = vec(value);
+    i += 3;
+  };
+  for (const CellStage& stage : stages_)
+    put(stage.p);
+  for (const NodeState& node : nodes_)
+    put(node.p);
+  if (options_.damping) {
+    for (const CellStage& stage : stages_)
+      put(stage.u);
+    if (extensible_)
+      for (const CellStage& stage : stages_)
+        put(stage.v);
+  }
+  if (!options_.rotary_inertia) return;
+  i = 0;
+  for (const CellStage& stage : stages_) {
+    rotation_track_.x.segment<3>(i) = vec(stage.theta);
+    rotation_track_.v.segment<3>(i) = vec(stage.omega);
+    i += 3;
+  }
+}
+
+void ShootingRod::accept_tracks() {
+  if (!options_.rotary_inertia) return;
+  for (std::size_t j = 0; j < stages_.size(); ++j)
+    std::copy_n(stages_[j].R, 9, &reference_rotations_[9 * j]);
+}
+
+void ShootingRod::start_tracks() {
+  accept_tracks();
+  for (CellStage& stage : stages_) {
+    std::fill_n(stage.theta, 3, 0.0);
+    std::fill_n(stage.omega, 3, 0.0);
+  }
+  fill_tracks();
+  track_.set_start(track_.x, VecX::Zero(track_.x.size()));
+  if (options_.rotary_inertia)
+    rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()),
+                              VecX::Zero(rotation_track_.x.size()));
+}
+
+RodModel::Unknowns ShootingRod::unknowns() const {
+  Unknowns u;
+  u.values.resize(static_cast<Eigen::Index>(6 * stages_.size()));
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    u.values.segment<3>(static_cast<Eigen::Index>(6 * j)) = vec(stages_[j].w);
+    u.values.segment<3>(static_cast<Eigen::Index>(6 * j + 3)) = vec(stages_[j].v);
+  }
+  u.starts = starts_;
+  return u;
+}
+
+void ShootingRod::set_unknowns(const Unknowns& u) {
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    std::copy_n(u.values.data() + 6 * j, 3, stages_[j].w);
+    std::copy_n(u.values.data() + 6 * j + 3, 3, stages_[j].v);
+  }
+  if (u.starts.size() != starts_.size()) {
+    // segments were cut differently then: same cuts again
+    const auto wanted = u.starts.size();
+    segment_first_.assign(wanted + 1, 0);
+    for (std::size_t g = 0; g <= wanted; ++g)
+      segment_first_[g] = static_cast<std::size_t>(cells_) * g / wanted;
+  }
+  starts_ = u.starts;
+}
+
+void ShootingRod::predict(const std::vector<const Unknowns*>& past,
+                          const std::vector<double>& weights) {
+  assert(!past.empty() && past.size() == weights.size());
+  Unknowns sum = *past.front();
+  for (const Unknowns* u : past)
+    if (u->starts.size() != sum.starts.size()) {
+      set_unknowns(sum);
+      return;
+    }
+  sum.values *= weights[0];
+  for (std::size_t i = 1; i < past.size(); ++i)
+    sum.values += weights[i] * past[i]->values;
+  for (std::size_t g = 0; g < sum.starts.size(); ++g) {
+    const NodeState& first = past[0]->starts[g];
+    Vec3 turn = Vec3::Zero(), p = Vec3::Zero(), n = Vec3::Zero(), m = Vec3::Zero();
+    for (std::size_t i = 0; i < past.size(); ++i) {
+      const NodeState& s = past[i]->starts[g];
+      turn += weights[i] * log_so3(rotation_of(s) * rotation_of(first).transpose());
+      p += weights[i] * position_of(s);
+      n += weights[i] * force_of(s);
+      m += weights[i] * moment_of(s);
+    }
+    NodeState& out = sum.starts[g];
+    Eigen::Map<RowMatrix>(out.R) = orthonormalized(exp_so3(turn) * Mat3(rotation_of(first)));
+    Eigen::Map<Vec3>(out.p) = p;
+    Eigen::Map<Vec3>(out.n) = n;
+    Eigen::Map<Vec3>(out.m) = m;
+  }
+  set_unknowns(sum);
+}
+
+RodSample ShootingRod::observe() const {
+  RodSample sample;
+  sample.length = forcing_.length;
+  sample.radius = section_.half_width;
+  sample.points.resize(nodes_.size());
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto n_stages = static_cast<Eigen::Index>(stages_.size());
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    RodPoint& point = sample.points[k];
+    const NodeState& node = nodes_[k];
+    point.s = grid_[k];
+    point.position = position_of(node);
+    point.rotation = rotation_of(node);
+    point.force = force_of(node);
+    point.moment = moment_of(node);
+    point.velocity = track_.v.segment<3>(3 * (n_stages + static_cast<Eigen::Index>(k)));
+    // strains from both neighbouring cells
+    Vec3 u = Vec3::Zero(), v = Vec3::Zero();
+    double sides = 0;
+    if (k > 0) {
+      u += along_cell(&stages_[(k - 1) * S], *table_, &CellStage::u, 1);
+      v += along_cell(&stages_[(k - 1) * S], *table_, &CellStage::v, 1);
+      sides += 1;
+    }
+    if (k + 1 < nodes_.size()) {
+      u += along_cell(&stages_[k * S], *table_, &CellStage::u, 0);
+      v += along_cell(&stages_[k * S], *table_, &CellStage::v, 0);
+      sides += 1;
+    }
+    point.curvature = u / sides;
+    point.shear_stretch = v / sides;
+  }
+  return sample;
+}
+
+RodEnergy ShootingRod::energy() const {
+  RodEnergy e;
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto n = static_cast<Eigen::Index>(stages_.size());
+  const Eigen::Index strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
+  Vec3 K_se = Vec3::Zero();
+  if (options_.shear) K_se.head<2>() = section_.K_se.head<2>();
+  if (options_.extension) K_se.z() = section_.K_se.z();
+  const Vec3 z(0, 0, 1);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / S;
+    const double weight = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
+    const CellStage& stage = stages_[j];
+    const auto i = 3 * static_cast<Eigen::Index>(j);
+    const Vec3 u = vec(stage.u), stretch = vec(stage.v) - z;
+    e.kinetic += weight * 0.5 * section_.rhoA * track_.v.segment<3>(i).squaredNorm();
+    if (options_.rotary_inertia)
+      e.kinetic +=
+          weight * 0.5 * vec(stage.omega).dot(section_.rhoJ.cwiseProduct(vec(stage.omega)));
+    e.elastic += weight * 0.5 *
+                 (u.dot(section_.K_bt.cwiseProduct(u)) + stretch.dot(K_se.cwiseProduct(stretch)));
+    e.gravity -= weight * section_.rhoA * forcing_.gravity.dot(vec(stage.p));
+    if (!options_.damping) continue;
+    const Vec3 u_t = track_.v.segment<3>(strains + i);
+    e.damping_power += weight * u_t.dot(section_.B_bt.cwiseProduct(u_t));
+    if (!extensible_) continue;
+    const Vec3 v_t = track_.v.segment<3>(strains + 3 * n + i);
+    e.damping_power += weight * v_t.dot(section_.B_se.cwiseProduct(v_t));
+  }
+  // Energy that enters per unit feed: the base section's traction works on the inflow, which brings
+  // strain energy and weight along.
+  const NodeState& base = nodes_.front();
+  const Vec3 u = along_cell(stages_.data(), *table_, &CellStage::u, 0);
+  const Vec3 v = along_cell(stages_.data(), *table_, &CellStage::v, 0);
+  const Vec3 n_S = rotation_of(base).transpose() * force_of(base),
+             m_S = rotation_of(base).transpose() * moment_of(base);
+  const double density =
+      0.5 * (u.dot(section_.K_bt.cwiseProduct(u)) + (v - z).dot(K_se.cwiseProduct(v - z)));
+  e.feed_power =
+      density - n_S.dot(v) - m_S.dot(u) - section_.rhoA * forcing_.gravity.dot(position_of(base));
+  return e;
+}
+
+}  // namespace cprsim

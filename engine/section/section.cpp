@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/section/section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cprsim {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Torsion constant of a rectangle with sides a >= b.
+double rectangle_torsion(double a, double b) {
+  double sum = 0;
+  for (int n = 1; n <= 39; n += 2)
+    sum += std::tanh(n * kPi * a / (2 * b)) / std::pow(n, 5);
+  return a * b * b * b * (1.0 / 3 - 64 / std::pow(kPi, 5) * (b / a) * sum);
+}
+
+}  // namespace
+
+void section_geometry(const SectionSpec& section, double& area, Vec3& second_moments) {
+  const double x = section.size.x(), y = section.size.y();
+  switch (section.shape) {
+    case SectionShape::kCircle: {
+      const double I = kPi / 4 * std::pow(x, 4);
+      area = kPi * x * x;
+      second_moments = {I, I, 2 * I};
+      return;
+    }
+    case SectionShape::kAnnulus: {
+      const double I = kPi / 4 * (std::pow(x, 4) - std::pow(y, 4));
+      area = kPi * (x * x - y * y);
+      second_moments = {I, I, 2 * I};
+      return;
+    }
+    case SectionShape::kRectangle:
+      area = x * y;
+      second_moments = {x * y * y * y / 12, y * x * x * x / 12,
+                        rectangle_torsion(std::max(x, y), std::min(x, y))};
+      return;
+    case SectionShape::kEllipse:
+      area = kPi * x * y;
+      second_moments = {kPi / 4 * x * y * y * y, kPi / 4 * y * x * x * x,
+                        kPi * std::pow(x * y, 3) / (x * x + y * y)};
+      return;
+  }
+}
+
+SectionProperties section_properties(const RodSpec& rod) {
+  SectionProperties s;
+  section_geometry(rod.section, s.area, s.second_moments);
+  if (rod.material) {
+    const MaterialSpec& m = *rod.material;
+    const double E = m.youngs_modulus, G = m.shear_modulus;
+    s.K_bt = {E * s.second_moments.x(), E * s.second_moments.y(), G * s.second_moments.z()};
+    s.K_se = {G * s.area, G * s.area, E * s.area};
+    s.rhoA = m.density * s.area;
+    const double Ix = s.second_moments.x(), Iy = s.second_moments.y();
+    s.rhoJ = m.density * Vec3(Ix, Iy, Ix + Iy);
+  }
+  const StiffnessSpec& k = rod.stiffness;
+  s.K_bt = {k.bending_x.value_or(s.K_bt.x()), k.bending_y.value_or(s.K_bt.y()),
+            k.torsion.value_or(s.K_bt.z())};
+  s.K_se = {k.shear_x.value_or(s.K_se.x()), k.shear_y.value_or(s.K_se.y()),
+            k.axial.value_or(s.K_se.z())};
+  if (rod.damping) {
+    const DampingSpec& b = *rod.damping;
+    s.B_bt = {b.bending, b.bending, b.torsion};
+    s.B_se = {b.shear, b.shear, b.axial};
+  }
+  const Vec2& size = rod.section.size;
+  s.half_width =
+      rod.section.shape == SectionShape::kRectangle ? 0.5 * size.norm() : size.maxCoeff();
+  return s;
+}
+
+}  // namespace cprsim

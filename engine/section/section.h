@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stiffness, damping and inertia of a rod's cross-section, from shape and material or given
+// directly.
+//
+// One letter, one meaning, in all of engine/ (frames: W world, S section; rod-local symbols):
+//   s, L     arc length of the unloaded rod, total length            m
+//   p, R     centreline point, section orientation (z = tangent)     W
+//   u, v     curvature and torsion; shear and stretch, v_rest = z    S; 1/m, 1
+//   n, m     internal force and moment, far part on near part        W; N, N m
+//   K_bt, K_se, B_bt, B_se   stiffness and Kelvin-Voigt damping      S, diagonal
+//   rhoA, rhoJ   mass and inertia per length                         kg/m, kg m
+#pragma once
+
+#include "engine/math/types.h"
+#include "engine/model/effects.h"
+#include "engine/model/rod_spec.h"
+
+namespace cprsim {
+
+struct SectionProperties {
+  double area = 0;
+  Vec3 second_moments = Vec3::Zero();  ///< about x, about y, torsion constant, m⁴
+  Vec3 K_bt = Vec3::Zero();            ///< EI_x, EI_y, GJ
+  Vec3 K_se = Vec3::Zero();            ///< GA_x, GA_y, EA
+  Vec3 B_bt = Vec3::Zero(), B_se = Vec3::Zero();
+  double rhoA = 0;
+  Vec3 rhoJ = Vec3::Zero();  ///< rho (I_x, I_y, I_x + I_y)
+  double half_width = 0;     ///< largest distance from the centre, m
+};
+
+/// Area, I_x, I_y and Saint-Venant torsion constant of a shape. Rectangle: the series of Timoshenko
+/// & Goodier, Theory of Elasticity, art. 109; ellipse: ibid. art. 105.
+void section_geometry(const SectionSpec& section, double& area, Vec3& second_moments);
+
+/// All properties; direct stiffnesses replace those of shape and material.
+SectionProperties section_properties(const RodSpec& rod);
+
+}  // namespace cprsim

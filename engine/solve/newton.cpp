@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/solve/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cprsim {
+namespace {
+
+constexpr double kSmallestStep = 1.0 / 1024;
+
+struct Counts {
+  long evaluations, factorizations;
+
+  explicit Counts(const Problem& p)
+      : evaluations(p.section_evaluations()), factorizations(p.factorizations()) {}
+};
+
+SolveReport finish(SolveReport report, const Problem& problem, const Counts& before,
+                   const ProblemResidual& r, SolveStatus status) {
+  report.status = status;
+  report.residual = r.largest;
+  report.evaluations = problem.section_evaluations() - before.evaluations;
+  report.factorizations = static_cast<int>(problem.factorizations() - before.factorizations);
+  report.growth = problem.growth();
+  report.worst_row = problem.worst_row();
+  return report;
+}
+
+bool falls(const ProblemResidual& trial, const ProblemResidual& r, double alpha) {
+  return trial.finite && trial.merit <= (1 - 2e-4 * alpha) * r.merit;
+}
+
+/// Shortens the current direction until it helps. @return false if no step does; the unknowns are
+/// then as before.
+bool backtrack(Problem& problem, ProblemResidual& r, ProblemResidual trial) {
+  for (double alpha = 1; alpha >= kSmallestStep;) {
+    // minimum of the parabola through merit, slope -2 merit and trial, kept within [0.1, 0.5] alpha
+    double next = 0.5 * alpha;
+    if (trial.finite) {
+      const double curvature = trial.merit - r.merit + 2 * alpha * r.merit;
+      next = std::clamp(alpha * alpha * r.merit / curvature, 0.1 * alpha, 0.5 * alpha);
+    }
+    alpha = next;
+    problem.move(alpha);
+    trial = problem.evaluate();
+    if (!falls(trial, r, alpha)) continue;
+    r = trial;
+    return true;
+  }
+  problem.move(0);
+  r = problem.evaluate();
+  return false;
+}
+
+/// From a full step that raised the merit: one more. @return true if the merit is then below `r`.
+bool second_chance(Problem& problem, const ProblemResidual& r, ProblemResidual& after) {
+  constexpr double kHopeless = 1e6;
+  if (!after.finite || after.merit > kHopeless * r.merit) return false;
+  if (!problem.find_direction(0)) return false;
+  problem.keep();
+  problem.move(1);
+  after = problem.evaluate();
+  return falls(after, r, 1);
+}
+
+enum class Moved { kNo, kOnce, kTwice };
+
+Moved newton_step(Problem& problem, ProblemResidual& r) {
+  problem.keep();
+  problem.move(1);
+  ProblemResidual trial = problem.evaluate();
+  if (falls(trial, r, 1)) {
+    r = trial;
+    return Moved::kOnce;
+  }
+  const ProblemResidual full = trial;
+  problem.move(0);
+  problem.mark();
+  problem.move(1);
+  problem.evaluate();
+  if (second_chance(problem, r, trial)) {
+    r = trial;
+    return Moved::kTwice;
+  }
+  problem.return_to_mark();
+  problem.evaluate();
+  if (!problem.find_direction(0)) return Moved::kNo;
+  problem.keep();
+  return backtrack(problem, r, full) ? Moved::kOnce : Moved::kNo;
+}
+
+}  // namespace
+
+const char* to_string(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::kConverged:
+      return "converged";
+    case SolveStatus::kStalled:
+      return "stalled";
+    case SolveStatus::kIterationLimit:
+      return "iteration limit";
+    case SolveStatus::kNotFinite:
+      return "not finite";
+    case SolveStatus::kSingular:
+      break;
+  }
+  return "singular";
+}
+
+const char* to_string(SolveStage stage) {
+  switch (stage) {
+    case SolveStage::kNewton:
+      return "Newton";
+    case SolveStage::kLevenbergMarquardt:
+      return "Levenberg-Marquardt";
+    case SolveStage::kContinuation:
+      return "continuation";
+    case SolveStage::kRelaxation:
+      break;
+  }
+  return "relaxation";
+}
+
+SolveReport newton(Problem& problem, const SolveOptions& options) {
+  SolveReport report;
+  const Counts before(problem);
+  ProblemResidual r = problem.evaluate();
+  report.initial_residual = r.largest;
+  report.history.push_back(r.largest);
+  while (true) {
+    if (!r.finite) return finish(report, problem, before, r, SolveStatus::kNotFinite);
+    if (r.largest <= options.tolerance)
+      return finish(report, problem, before, r, SolveStatus::kConverged);
+    if (report.iterations >= options.max_iterations || r.merit > options.max_merit)
+      return finish(report, problem, before, r, SolveStatus::kIterationLimit);
+    if (!problem.find_direction(0))
+      return finish(report, problem, before, r, SolveStatus::kSingular);
+    ++report.iterations;
+    const Moved moved = newton_step(problem, r);
+    if (moved == Moved::kTwice) ++report.iterations;
+    report.history.push_back(r.largest);
+    if (moved == Moved::kNo) return finish(report, problem, before, r, SolveStatus::kStalled);
+  }
+}
+
+SolveReport levenberg_marquardt(Problem& problem, const SolveOptions& options) {
+  SolveReport report;
+  report.stage = SolveStage::kLevenbergMarquardt;
+  const Counts before(problem);
+  ProblemResidual r = problem.evaluate();
+  report.initial_residual = r.largest;
+  report.history.push_back(r.largest);
+  double mu = 1e-3, growth = 2;
+  while (true) {
+    if (!r.finite) return finish(report, problem, before, r, SolveStatus::kNotFinite);
+    if (r.largest <= options.tolerance)
+      return finish(report, problem, before, r, SolveStatus::kConverged);
+    if (report.iterations >= options.max_iterations)
+      return finish(report, problem, before, r, SolveStatus::kIterationLimit);
+    ++report.iterations;
+    const bool found = problem.find_direction(mu);
+    ProblemResidual trial;
+    trial.finite = false;
+    problem.keep();
+    if (found) {
+      problem.move(1);
+      trial = problem.evaluate();
+    }
+    if (found && trial.finite && trial.merit < r.merit) {
+      const double gain = 1 - trial.merit / r.merit;
+      mu *= std::max(1. / 10, 1 - std::pow(2 * gain - 1, 3));
+      growth = 2;
+      r = trial;
+    } else {
+      problem.move(0);
+      r = problem.evaluate();
+      mu *= growth;
+      growth *= 2;
+      if (mu > 1e12) return finish(report, problem, before, r, SolveStatus::kStalled);
+    }
+    report.history.push_back(r.largest);
+  }
+}
+
+namespace {
+
+void add_counts(SolveReport& total, const SolveReport& part) {
+  total.iterations += part.iterations;
+  total.evaluations += part.evaluations;
+  total.factorizations += part.factorizations;
+  total.history.insert(total.history.end(), part.history.begin(), part.history.end());
+  total.status = part.status;
+  total.residual = part.residual;
+  total.growth = part.growth;
+  total.worst_row = part.worst_row;
+}
+
+}  // namespace
+
+SolveReport continuation(Problem& problem, const SolveOptions& options) {
+  SolveReport total;
+  total.stage = SolveStage::kContinuation;
+  SolveOptions inner = options;
+  inner.max_iterations = 12;
+  constexpr double kSmallestFraction = 1e-3;
+  double done = 0, step = 0.25;
+  while (done < 1) {
+    const double target = std::min(1.0, done + step);
+    problem.set_fraction(target);
+    // intermediate points need no precision, only to stay on the branch
+    inner.tolerance = target < 1 ? std::max(options.tolerance, 1e-4) : options.tolerance;
+    inner.max_iterations = target < 1 ? 12 : options.max_iterations;
+    const SolveReport part = newton(problem, inner);
+    add_counts(total, part);
+    if (part.converged()) {
+      done = target;
+      step *= 2;
+      continue;
+    }
+    step /= 4;
+    if (step < kSmallestFraction) break;
+    problem.set_fraction(done);
+    problem.restart();
+    if (done > 0) {
+      // walk back up to the last good fraction in one solve; if that fails too the branch is lost
+      SolveOptions back = inner;
+      back.tolerance = 1e-4;
+      double reached = 0, stride = done;
+      while (reached < done && stride > kSmallestFraction) {
+        problem.set_fraction(std::min(done, reached + stride));
+        const SolveReport again = newton(problem, back);
+        add_counts(total, again);
+        if (again.converged()) {
+          reached += stride;
+        } else {
+          problem.restart();
+          reached = 0;
+          stride /= 4;
+        }
+      }
+      if (reached < done) break;
+    }
+  }
+  problem.set_fraction(1);
+  return total;
+}
+
+SolveReport relaxation(Problem& problem, const SolveOptions& options) {
+  SolveReport total;
+  total.stage = SolveStage::kRelaxation;
+  SolveOptions inner = options;
+  inner.max_iterations = 12;
+  // assembly gaps close first, under strong drag, then the drag falls with the residual
+  constexpr int kSteps = 400;
+  double drag = 10, fraction = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double target = std::min(1.0, fraction + 0.1);
+    problem.set_fraction(target);
+    problem.set_relaxation(drag);
+    inner.tolerance = 1e-6;
+    const SolveReport part = newton(problem, inner);
+    add_counts(total, part);
+    if (part.converged()) {
+      fraction = target;
+      drag *= fraction < 1 ? 1.0 : part.iterations <= 4 ? 0.4 : 0.8;
+    } else {
+      drag *= 8;
+      if (drag > 1e9) break;
+      continue;
+    }
+    if (fraction < 1 || drag > 1e-3) continue;
+    problem.set_relaxation(0);
+    const SolveReport last = newton(problem, options);
+    add_counts(total, last);
+    if (last.converged()) return total;
+    drag = 1e-1;
+  }
+  problem.set_relaxation(0);
+  if (total.converged()) total.status = SolveStatus::kIterationLimit;
+  return total;
+}
+
+namespace {
+
+// Rods that stretch as easily as they bend can be brought together in a few steps; then they
+// harden.
+void soft_start(Problem& problem, SolveReport& total) {
+  SolveOptions rough;
+  rough.tolerance = 1e-2;
+  rough.max_iterations = 15;
+  for (const double softness : {2e-2, 2e-3}) {
+    problem.set_softness(softness);
+    add_counts(total, newton(problem, rough));
+  }
+  problem.set_softness(0);
+}
+
+}  // namespace
+
+SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
+  using Rung = SolveReport (*)(Problem&, const SolveOptions&);
+  const Rung rungs[] = {newton, levenberg_marquardt, continuation, relaxation};
+  SolveReport total;
+  const ProblemResidual first = problem.evaluate();
+  total.initial_residual = first.largest;
+  for (const Rung rung : rungs) {
+    const bool from_soft = rung == newton || rung == levenberg_marquardt;
+    if (from_soft && problem.wants_soft_start() && first.largest > options.tolerance)
+      soft_start(problem, total);
+    const SolveReport part = rung(problem, options);
+    add_counts(total, part);
+    total.stage = part.stage;
+    if (part.converged()) return total;
+    problem.set_fraction(1);
+    problem.set_relaxation(0);
+    problem.restart();
+  }
+  return total;
+}
+
+}  // namespace cprsim

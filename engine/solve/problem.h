@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a solver sees: rows that are to vanish, a Newton direction, and two dials that make a
+// problem easier. It knows no robot. Every row is dimensionless.
+#pragma once
+
+#include <string>
+
+namespace cprsim {
+
+struct ProblemResidual {
+  double merit = 0;    ///< half the sum of squared rows
+  double largest = 0;  ///< largest row
+  bool finite = true;
+};
+
+class Problem {
+ public:
+  virtual ~Problem() = default;
+
+  /// Rows at the current unknowns.
+  virtual ProblemResidual evaluate() = 0;
+
+  /// Linearises at the point of the last evaluate() and finds the Newton direction; with mu > 0 the
+  /// Levenberg-Marquardt direction instead. @return false if the linear system is singular or not
+  /// finite.
+  virtual bool find_direction(double mu) = 0;
+
+  virtual void keep() = 0;              ///< remembers the unknowns
+  virtual void move(double alpha) = 0;  ///< remembered unknowns plus alpha times the direction
+
+  virtual void mark() = 0;  ///< remembers the unknowns for longer: the watchdog's way back
+  virtual void return_to_mark() = 0;
+
+  /// Fraction of loads applied and of initial assembly gaps closed; 1 is the problem itself.
+  virtual void set_fraction(double fraction) = 0;
+  /// Drag towards the unknowns at the time of the call, in units of the robot's own stiffness; 0 is
+  /// none.
+  virtual void set_relaxation(double drag) = 0;
+  /// Extra softness where stiffness makes the start hard, in the problem's own units; 0 is the
+  /// problem itself.
+  virtual void set_softness(double softness) = 0;
+  virtual bool wants_soft_start() const = 0;  ///< parts must first be brought together
+  /// Back to the unknowns the scene starts from.
+  virtual void restart() = 0;
+
+  virtual std::string worst_row() const = 0;
+  virtual double growth() const = 0;
+  virtual long section_evaluations() const = 0;
+  virtual long factorizations() const = 0;
+};
+
+}  // namespace cprsim
