@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
+#include "render/trace.h"
 
-#include "engine/model/channel.h"
 #include "render/renderer.h"
 
 namespace cprsim {
 
-namespace {
+std::optional<Channel> find_point(const Scene& scene, const std::string& channel) {
+  for (const std::string& pattern : {channel, channel + ".position"}) {
+    for (const Channel& found : find_channels(scene, pattern)) {
+      if (found.quantity == Quantity::kPosition && found.index >= 0) return found;
+    }
+  }
+  return std::nullopt;
+}
 
-std::optional<Vec3> place_of(const Scene& scene, const Snapshot& now, const Channel& channel) {
-  const auto i = static_cast<std::size_t>(channel.index);
-  switch (channel.entity) {
+std::optional<Vec3> point_now(const Scene& scene, const Snapshot& now, const Channel& point) {
+  const auto i = static_cast<std::size_t>(point.index);
+  switch (point.entity) {
     case ChannelEntity::kBody:
       if (i < now.bodies.size()) return now.bodies[i].X_WB.p;
       break;
@@ -23,7 +29,7 @@ std::optional<Vec3> place_of(const Scene& scene, const Snapshot& now, const Chan
     }
     case ChannelEntity::kRodPoint:
       if (i < now.rods.size() && !now.rods[i].points.empty()) {
-        return point_at(now.rods[i], channel.s).position;
+        return point_at(now.rods[i], point.s).position;
       }
       break;
     default:
@@ -32,16 +38,10 @@ std::optional<Vec3> place_of(const Scene& scene, const Snapshot& now, const Chan
   return std::nullopt;
 }
 
-}  // namespace
-
 std::optional<Vec3> traced_point(const Scene& scene, const Snapshot& now,
                                  const std::string& channel) {
-  for (const Channel& found : find_channels(scene, channel)) {
-    if (found.quantity == Quantity::kPosition && found.index >= 0) {
-      return place_of(scene, now, found);
-    }
-  }
-  return std::nullopt;
+  const std::optional<Channel> point = find_point(scene, channel);
+  return point ? point_now(scene, now, *point) : std::nullopt;
 }
 
 }  // namespace cprsim
