@@ -73,6 +73,11 @@ TEST(Expectations, SayThatAnInstantWasNotReached) {
   expected.max = 2;
   EXPECT_EQ(check(expected, 0.4).verdict, Verdict::kMet);
   EXPECT_EQ(check(expected, 0.2).verdict, Verdict::kNotReached);
+  expected.from = 0.3;  // begins after the end of the run
+  expected.to = 0.2;
+  EXPECT_EQ(check(expected, 0.2).verdict, Verdict::kNotReached);
+  expected.from = 0;
+  expected.to = -1;
   expected.max = 1.1;  // what is broken is broken
   EXPECT_EQ(check(expected, 0.2).verdict, Verdict::kNotMet);
 }

@@ -2,6 +2,7 @@
 #include "tools/cprsim/command_line.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -37,7 +38,8 @@ void add_choice(CLI::App& app, const std::string& name, Enum& value, const std::
          [&value, choices, words, name](const std::string& word) {
            const auto found = choices.find(word);
            if (found == choices.end()) {
-             throw CLI::ValidationError(name, not_one_of(word, "a choice", words));
+             throw CLI::ValidationError(
+                 name, fmt::format("'{}' is none of {}", word, fmt::join(words, ", ")));
            }
            value = found->second;
          },

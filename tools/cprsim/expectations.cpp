@@ -125,6 +125,7 @@ void Expectations::follow(Watch& watch, const Snapshot& before, const Snapshot& 
   }
   const double end = scene_.simulation.mode == Mode::kStatic ? 0 : scene_.simulation.duration;
   const double to = expected.to < 0 ? end : expected.to;
+  if (to < expected.from) return;  // --duration ends the run before
   if (!watch.of_steps && passes(expected.from))
     look(watch, interpolate(before, now, expected.from));
   if (now.time >= expected.from - slack && now.time <= to + slack) look(watch, now);

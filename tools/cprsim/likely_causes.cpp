@@ -72,7 +72,7 @@ void blame_buckling(const Scene& scene, const ProblemFacts& facts, Causes& cause
   double carried = 0;
   for (const RodFacts& rod : facts.rods)
     carried += rod.buckling_load;
-  if (facts.rods.empty() || weight < carried) return;
+  if (facts.rods.empty() || weight <= carried) return;
   causes.push_back(
       fmt::format("the bodies weigh {:.3g} N, the rods buckle (clamped-free) at {:.3g} N together",
                   weight, carried));
@@ -110,7 +110,7 @@ Causes likely_causes(const Scene& scene, const ProblemFacts& facts, const SolveR
     causes.push_back(
         "something can move without resistance: an end that nothing holds, a missing joint");
   }
-  if (started && !scene.effects.has(Effect::kDamping)) {
+  if (started && scene.simulation.mode == Mode::kDynamic && !scene.effects.has(Effect::kDamping)) {
     causes.push_back("nothing takes energy out: <damping/> is not among the effects");
   }
   if (causes.size() > kMostCauses) causes.resize(kMostCauses);

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <stdexcept>
@@ -39,7 +40,8 @@ struct Run {
 bool must_stop(Run& run) {
   if (stop_signal() != 0) {
     run.report.end = RunEnd::kInterrupted;
-    run.report.failure = fmt::format("interrupted by signal {}", stop_signal());
+    run.report.failure =
+        fmt::format("interrupted by {}", stop_signal() == SIGINT ? "SIGINT" : "SIGTERM");
   } else if (run.options.max_wall && run.watch.seconds() > *run.options.max_wall) {
     run.report.end = RunEnd::kWallTime;
     run.report.failure = fmt::format("--max-wall {} is used up", *run.options.max_wall);
@@ -130,7 +132,7 @@ void show(const Run& run) {
   if (run.console.json()) write_to_stdout(to_json(run.scene, report));
   if (report.end == RunEnd::kDone) {
     run.console.say(to_summary(run.scene, report, run.folder.string()));
-    if (report.exit_code != kExitDone) run.console.error("an expectation is not met");
+    if (report.exit_code != kExitDone) run.console.error("not all expectations are met");
     return;
   }
   run.console.error(explain_failure(report, run.folder.string()));

@@ -125,18 +125,16 @@ Json energy_json(const Ledger& ledger) {
 }
 
 Json failure_json(const RunReport& report) {
+  Json failure = {
+      {"reason", to_string(report.end)}, {"message", report.failure}, {"time", report.time}};
+  if (report.end != RunEnd::kFailed) return failure;
   const SolveReport& solve = report.last_solve;
-  return {{"reason", to_string(report.end)},
-          {"message", report.failure},
-          {"time", report.time},
-          {"status", to_string(solve.status)},
-          {"stage", to_string(solve.stage)},
-          {"iterations", solve.iterations},
-          {"residual", solve.residual},
-          {"worst_row", solve.worst_row},
-          {"growth", solve.growth},
-          {"residual_history", solve.history},
-          {"likely_causes", report.likely_causes}};
+  failure["solve"] = {{"status", to_string(solve.status)}, {"stage", to_string(solve.stage)},
+                      {"iterations", solve.iterations},    {"residual", solve.residual},
+                      {"worst_row", solve.worst_row},      {"growth", solve.growth},
+                      {"residual_history", solve.history}};
+  failure["likely_causes"] = report.likely_causes;
+  return failure;
 }
 
 Json expectation_json(const Scene& scene, const ExpectResult& result) {

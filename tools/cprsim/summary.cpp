@@ -141,10 +141,10 @@ std::string to_summary(const Scene& scene, const RunReport& report, const std::s
 
 std::string explain_failure(const RunReport& report, const std::string& folder) {
   std::string text = report.failure;
+  text += fmt::format("\n  at         t = {:.6g} s of {:.6g} s, after {} steps", report.time,
+                      report.end_time, report.statistics.steps);
   if (report.end == RunEnd::kFailed) {
     const SolveReport& solve = report.last_solve;
-    text += fmt::format("\n  at         t = {:.6g} s of {:.6g} s, after {} steps", report.time,
-                        report.end_time, report.statistics.steps);
     text += fmt::format("\n  solver     {} in {} after {} iterations, residual {:.2e}",
                         to_string(solve.status), to_string(solve.stage), solve.iterations,
                         solve.residual);

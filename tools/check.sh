@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Everything a change must pass: formatting, and all tests (those of the layers among them)
+# in a release build and again with sanitizers.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+echo "== formatting"
+git ls-files -z '*.h' '*.cpp' | xargs -0 clang-format --dry-run -Werror
+
+echo "== release"
+./tools/test.sh
+
+echo "== sanitizers"
+cmake -S . -B build-sanitize -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCPRSIM_SANITIZE=ON -DCPRSIM_BENCHMARKS=OFF
+cmake --build build-sanitize
+ctest --test-dir build-sanitize --output-on-failure
