@@ -204,6 +204,7 @@ Vec2 range_of(ColorBy by, double largest) {
 Drawing make_drawing(const Scene& scene, const std::vector<Part>& parts, const Snapshot& now,
                      const FrameDecor& decor, const Vec2& color_range) {
   Drawing drawing;
+  drawing.tubes_mean_numbers = decor.color_by != ColorBy::kNone;
   drawing.part_poses.reserve(parts.size());
   for (const Part& part : parts)
     drawing.part_poses.push_back(pose_of(now, part.body) * part.X_BV);

@@ -60,6 +60,7 @@ struct Drawing {
   std::vector<Pose> part_poses;  ///< X_WV of each Part
   std::vector<Tube> tubes;
   std::vector<Ribbon> ribbons;
+  bool tubes_mean_numbers = false;  ///< their colours are those of a legend
 };
 
 /// Bodies that never move: static ones and those fixed to the world or to such a body.

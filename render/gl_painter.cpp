@@ -255,6 +255,7 @@ void GlPainter::draw_objects(const Frame& frame, Which which, const Region& regi
   objects_->set("clip_from_world", frame.view.projection());
   objects_->set("cut", Vec4(0, 0, 1, -frame.backdrop.ground_z));
   objects_->set("unlit", 0.0);
+  objects_->set("self_lit", 0.0);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (drawn(i, which) && parts_[i].look.opacity >= 1) draw_part(frame, i);
   }
@@ -268,9 +269,12 @@ void GlPainter::draw_sweeps_and_glass(const Frame& frame, Which which) {
   objects_->set("specular", look.specular);
   objects_->set("emissive", look.emissive);
   objects_->set("shininess", std::clamp(look.shininess, 1.0, 200.0));
+  // colours that stand for numbers must not drown in shade
+  objects_->set("self_lit", frame.drawing.tubes_mean_numbers ? 0.6 : 0.15);
   gl_.Enable(GL_CULL_FACE);
   tubes_.draw();
   gl_.Disable(GL_CULL_FACE);
+  objects_->set("self_lit", 0.0);
 
   gl_.Enable(GL_BLEND);
   gl_.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

@@ -98,7 +98,7 @@ Backdrop make_backdrop(const Scene& scene, const Ball& bounds, double ground_z) 
   backdrop.fade_from = 1.6 * bounds.radius;
   backdrop.fade_to = 9 * bounds.radius;
   backdrop.middle = bounds.centre;
-  backdrop.ground_color = {0.76, 0.775, 0.80};
+  backdrop.ground_color = {0.80, 0.81, 0.825};
   backdrop.horizon_color = {0.93, 0.945, 0.96};
   backdrop.zenith_color = {0.52, 0.64, 0.80};
   if (scene.environment.background_set) {

@@ -60,7 +60,7 @@ TriMesh revolve(const Profile2& profile, int sides, std::array<std::uint8_t, 4> 
 
 /// Flat bottom, rounded rim, straight side, rounded rim, flat top.
 Profile2 cylinder_profile(double radius, double length) {
-  const double bevel = 0.12 * std::min(radius, 0.5 * length);
+  const double bevel = 0.3 * std::min(0.25 * radius, 0.5 * length);
   const double h = 0.5 * length;
   Profile2 profile{{0, -h, 0, -1}};
   add_arc(profile, radius - bevel, -h + bevel, bevel, -0.5 * kPi, 0, 3);

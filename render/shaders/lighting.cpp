@@ -36,8 +36,8 @@ float seen_softly(sampler2D cover, vec3 q) {
   if (near.r < 0.002) return 1.0;
   float above = q.z - near.g / near.r;
   if (above < 0.0) return 1.0;
-  // in texels; 1.5 hides the texels of the finest level
-  float width = min(2.5 * above, 1.0) * shadow_softness / shadow_texel + 1.5;
+  // in texels; 1.2 hides the texels of the finest level
+  float width = min(1.4 * above, 1.0) * shadow_softness / shadow_texel + 1.2;
   float level = log2(width) - 0.5;
   vec2 step = 0.5 * exp2(level) * shadow_texel * vec2(1.0, -1.0);
   float covered = textureLod(cover, q.xy + step.xx, level).r +

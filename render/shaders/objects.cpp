@@ -26,7 +26,7 @@ const char* const kObjectFragment = R"(
 in vec3 p_W, n_W;
 in vec4 tint;
 uniform vec3 eye, specular, emissive;
-uniform float shininess, unlit;
+uniform float shininess, unlit, self_lit;  // self_lit: share of the colour that needs no light
 layout(location = 0) out vec4 pixel;
 void main() {
   if (unlit > 0.5) {
@@ -51,6 +51,7 @@ void main() {
   float fresnel = 0.03 + 0.35 * grazing * grazing * grazing * grazing;
   vec3 room = mix(ambient_down, ambient_up * 1.4, smoothstep(-0.15, 0.5, mirror.z));
   float highlight = pow(max(dot(mirror, to_key), 0.0), shininess) * (0.25 + 0.02 * shininess);
+  light = mix(light, vec3(1.0), self_lit);
   vec3 glow = specular * key_color * (highlight * seen * step(0.0, toward)) + room * fresnel;
   vec3 color = encoded(albedo * light + glow + decoded(emissive));
   pixel = vec4(color * tint.a, tint.a);

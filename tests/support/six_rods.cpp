@@ -103,9 +103,9 @@ Scene six_rods_scene() {
   scene.lights.push_back(sun);
   CameraSpec camera;
   camera.name = "hero";
-  camera.eye = {0.75, -0.75, 0.55};
-  camera.look_at = {0, 0, 0.2};
-  camera.horizontal_fov = 0.7;
+  camera.eye = {0.82, -0.98, 0.56};
+  camera.look_at = {0, 0, 0.215};
+  camera.horizontal_fov = 0.75;
   scene.cameras.push_back(camera);
   VideoSpec video;
   video.file = "six_rods.mp4";
