@@ -146,6 +146,8 @@ int BulletWorld::count_substeps(double step) const {
 }
 
 void BulletWorld::advance(double step, const std::vector<BodyMotion>& others) {
+  if (step <= 0) return;
+
   // obstacles set out from where they were; at first, from where their velocity says
   for (Obstacle& obstacle : obstacles_) {
     const BodyMotion& end = others.at(static_cast<std::size_t>(obstacle.index));

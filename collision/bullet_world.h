@@ -6,7 +6,8 @@
 //   which no
 //       contact holds it
 // Bodies never sleep. Contact forces are those of Bullet's projected Gauss-Seidel solver, without
-// regularisation; penetration is removed without adding velocity.
+// regularisation; penetration is removed without adding velocity. A moving concave mesh collides as
+// its convex hull; links of one model collide like those of two.
 #pragma once
 
 #include <memory>

@@ -198,8 +198,23 @@ TEST(Contact, AMovingObstaclePushes) {
   EXPECT_LT(std::abs(world[1].X_WB.p.y()), 1e-8);
 }
 
-TEST(Contact, AConveyorObstacleTurningCarriesARestingBallAlong) {
-  // a disc that turns under a cube near its axis: the cube turns with it
+TEST(Contact, AnObstacleThatStartsElsewhereThanInTheSceneHitsNobody) {
+  // as after an initial static equilibrium: the plate is 3 cm lower than the scene says
+  BodySpec plate;
+  plate.name = "plate";
+  plate.colliders = {collider(shape(ShapeKind::kBox, Vec3(0.1, 0.1, 0.01)))};
+  Scene scene = scene_of({plate, cube(Vec3(0, 0, -0.015))});
+  JointSpec joint;
+  joint.child = 0;
+  scene.joints = {joint};
+  World world(scene);
+  world.motions[0].X_WB.p.z() = -0.03;
+  world.run(0.1, 1e-3);
+  EXPECT_NEAR(world[1].X_WB.p.z(), -0.015, 1e-8);
+  EXPECT_LT(world[1].linear_velocity.norm(), 1e-8);
+}
+
+TEST(Contact, ATurningDiscTakesACubeAlong) {
   BodySpec disc;
   disc.name = "disc";
   disc.X_WB.p = Vec3(0, 0, -0.005);
