@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Who touches whom, and how. Colliders 1 and 2 touch if (category_1 & collide_2) | (category_2 &
 // collide_1) is not zero (SDF). Coefficients of friction and restitution of a pair are the products
-// of the two colliders' (Bullet's rule). Bounces are prepared so that Bullet's step conserves their
-// energy:
+// of the two colliders' (Bullet's rule). Bounces are made to conserve energy:
 //   (1) the bounce takes place in the step in which the gap closes, with v_n⁺ = -e v_n⁻ + a_n dt
-// where a_n is the acceleration of gravity along the normal; when that is not outwards, there is no
-// bounce.
+// a_n is the acceleration of gravity along the normal. If that is not outwards, there is no bounce.
 #pragma once
 
 #include <vector>

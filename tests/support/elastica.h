@@ -5,8 +5,7 @@
 //   (2) k² = (1 + sin θ_L)/2,  sin φ_0 = 1/(k √2),  α L = K(k) - F(φ_0, k)
 //   (3) x_L = L - (2/α) (E(k) - E(φ_0, k)),   z_L = √(2 sin θ_L) / α
 // Bisshopp and Drucker, Large deflection of cantilever beams, Q. Appl. Math. 3 (1945) 272-275.
-// Differences of complete and incomplete integrals are taken by the addition theorem, with nothing
-// cancelled:
+// Differences of complete and incomplete integrals come from the addition theorem, uncancelled:
 //   (4) tan ψ = cot φ_0 / k':  K - F(φ_0) = F(ψ),  E - E(φ_0) = E(ψ) - k² sin φ_0 sin ψ
 #pragma once
 

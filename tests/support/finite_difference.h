@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks an analytic Jacobian against differences of the function itself, on vector spaces and
-// manifolds:
+// Checks an analytic Jacobian against differences of the function, also on manifolds:
 //   (1) J e_j = [8 (f(x ⊕ h e_j) ⊖ f(x)) - 8 (f(x ⊕ -h e_j) ⊖ f(x))
 //               - (f(x ⊕ 2h e_j) ⊖ f(x)) + (f(x ⊕ -2h e_j) ⊖ f(x))] / 12 h
 // Fourth order: with h = 1e-3 of the scale of x, truncation and roundoff are both about 1e-12.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reference solution of the static Cosserat rod from base to tip, shared with nothing of the
-// engine:
+// Reference solution of the static Cosserat rod from base to tip, without a line of the engine:
 //   (1) p' = R v,  h' = ½ h ⊗ (0, u),  n' = -f,  m' = -p' × n - l
 //   (2) u = u_ref + C_bt Rᵀ m,  v = (0, 0, 1) + C_se Rᵀ n
 // with R = R(h / |h|), h a quaternion, integrated by SUNDIALS CVODE (Adams, variable order and
@@ -29,8 +28,7 @@ struct ReferenceSection {
 };
 
 /// The section at s = fraction · length, given that at s = 0.
-/// @param tolerance relative, of each step; at 1e-15 the global error is about 1e-14, at 1e-13 it
-/// is 1e-12.
+/// @param tolerance relative, of each step; at 1e-15 the error at the tip is about 1e-14.
 /// @throws std::runtime_error if CVODE gives up.
 ReferenceSection integrate_reference_arc(const ReferenceRod& rod, const ReferenceSection& base,
                                          double fraction = 1, double tolerance = 1e-15);
