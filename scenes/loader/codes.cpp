@@ -38,7 +38,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"E403", "a link, frame, joint or model that does not exist"},
       {"E404", "a rod or rod point that does not exist"},
       {"E405", "frames, attachments or classes refer to each other in a loop"},
-      {"E406", "something is attached to a model that has no link"},
+      {"E406", "a model that is not static has no link"},
       {"E407", "a joint connects a body with itself, or has the world as its child"},
       {"E408", "a rod class that does not exist"},
       {"E409", "a profile that does not exist"},

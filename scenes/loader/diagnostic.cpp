@@ -31,8 +31,8 @@ const char* hue(Severity severity) {
 
 std::string place_of(const Diagnostic& d) {
   std::string text = d.file;
-  if (d.line > 0) text += ":" + std::to_string(d.line);
-  if (d.line > 0 && d.column > 0) text += ":" + std::to_string(d.column);
+  if (d.line > 0) text.append(":").append(std::to_string(d.line));
+  if (d.line > 0 && d.column > 0) text.append(":").append(std::to_string(d.column));
   return text;
 }
 

@@ -154,6 +154,12 @@ std::unique_ptr<Node> parse_document(const std::string& text, int file, Reporter
     report.at(Severity::kError, "E201", {file, 1, 1}, 0, "there is no element");
     return nullptr;
   }
+  for (auto* node = document.FirstChild(); node; node = node->NextSibling())
+    if (node->ToText() && !trim(node->Value()).empty()) {
+      report.at(Severity::kError, "E201", {file, node->GetLineNum(), 1}, 0,
+                "text outside the root element");
+      return nullptr;
+    }
   return Builder(std::move(tags), file, report).build(*root, {});
 }
 

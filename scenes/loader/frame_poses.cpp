@@ -73,10 +73,13 @@ void FrameGraph::connect_model(FrameVertex& v) {
   const int inside = scope_of(v.node);
   if (const std::string_view frame = v.node->value("placement_frame"); !frame.empty())
     v.placement = resolve(inside, frame, *v.node, "placement_frame", false);
-  if (const std::string_view link = v.node->value("canonical_link"); !link.empty())
+  const std::string_view link = v.node->value("canonical_link");
+  if (!link.empty())
     v.attached_to = resolve(inside, link, *v.node, "canonical_link", false);
   else
     v.attached_to = canonical_link(inside);
+  if (v.attached_to < 0 && link.empty() && !scopes_[at(inside)].is_static)
+    report_.missing("E406", *v.node, describe(*v.node) + " has no link");
   if (v.attached_to < 0) v.attached_to = scopes_[0].self;
 }
 

@@ -128,10 +128,11 @@ void read_shear_modulus(Reading& r, const Chain& chain, MaterialSpec& material) 
     if (modulus) material.shear_modulus = number_of(modulus, 0);
     if (ratio) {
       const double nu = number_of(ratio, 0);
-      if (nu <= -1 || nu > 0.5)
+      const bool possible = nu > -1 && nu <= 0.5;
+      if (!possible)
         r.report.bad_text("E306", *ratio, "Poisson's ratio lies above -1 and is at most 0.5");
-      else if (!modulus)
-        material.shear_modulus = material.youngs_modulus / (2 * (1 + nu));
+      if (!modulus)
+        material.shear_modulus = material.youngs_modulus / (2 * (1 + (possible ? nu : 0)));
     }
     if (modulus || ratio) return;
   }

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a good scene becomes.
+#include "scenes/loader/load.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/scenes/scene_text.h"
+
+namespace cprsim {
+namespace {
+
+std::unique_ptr<Scene> scene_of(const std::string& model = "", const std::string& world = "") {
+  LoadResult result = load_text(scene_text(model, world));
+  EXPECT_TRUE(result.scene) << to_text(result.diagnostics);
+  return result.scene ? std::move(result.scene) : std::make_unique<Scene>();
+}
+
+TEST(Loading, FillsTheStewartPlatform) {
+  LoadResult result =
+      load_scene(std::string(CPRSIM_SOURCE_DIR) + "/scenes/robots/csg_published.xml");
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  const Scene& scene = *result.scene;
+  ASSERT_EQ(scene.rods.size(), 6u);
+  EXPECT_EQ(scene.rods[0].name, "robot::leg_1");
+  EXPECT_EQ(scene.rods[3].length, 0.4216240113);
+  EXPECT_EQ(scene.rods[0].section.size[0], 0.001);
+  EXPECT_EQ(scene.rods[0].material->shear_modulus, 80e9);
+  EXPECT_TRUE(scene.rods[0].tip.spin_free);
+  EXPECT_FALSE(scene.rods[0].base.spin_free);
+  EXPECT_EQ(scene.bodies[static_cast<std::size_t>(scene.rods[0].tip.at.body)].name,
+            "robot::platform");
+  const double a = 50 * std::acos(-1.0) / 180;
+  EXPECT_LT((scene.rods[0].tip.at.X_BF.p - 0.087 * Vec3(std::cos(a), -std::sin(a), 0)).norm(),
+            1e-15);
+  EXPECT_TRUE(scene.effects.has(Effect::kExtension));
+  EXPECT_FALSE(scene.effects.has(Effect::kDamping));
+  EXPECT_EQ(scene.simulation.mode, Mode::kStatic);
+  EXPECT_EQ(scene.hash.size(), 16u);
+}
+
+TEST(Loading, PlacesJointFramesSoThatBothSidesAgreeAtZero) {
+  const auto scene = scene_of(R"(
+    <link name="arm"><pose>0.1 0.2 0.3 0.4 0.5 0.6</pose>
+      <inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>
+    <joint name="hinge" type="revolute"><pose>0.01 0.02 0.03 1 0 0</pose><parent>plate</parent><child>arm</child>
+      <axis><xyz expressed_in="base">0 0 2</xyz></axis></joint>)");
+  const JointSpec& joint = scene->joints.at(1);
+  const Pose left = scene->bodies.at(1).X_WB * joint.X_PJ,
+             right = scene->bodies.at(2).X_WB * joint.X_CJ;
+  EXPECT_LT((left.p - right.p).norm(), 1e-15);
+  EXPECT_LT((left.R - right.R).norm(), 1e-14);
+  EXPECT_LT((joint.X_CJ.p - Vec3(0.01, 0.02, 0.03)).norm(), 1e-15);  // relative to the child
+  EXPECT_LT((right.R * joint.axis - Vec3::UnitZ()).norm(), 1e-14);
+}
+
+TEST(Loading, AllowsNamesBeforeTheirDefinition) {
+  const auto scene = scene_of(R"(
+    <frame name="early" attached_to="late"/>
+    <frame name="late" attached_to="plate"><pose relative_to="base">0 0 1 0 0 0</pose></frame>)");
+  ASSERT_EQ(scene->frames.size(), 2u);
+  EXPECT_EQ(scene->frames[0].at.body, 1);
+  EXPECT_LT((scene->frames[0].at.X_BF.p - Vec3(0, 0, 0.6)).norm(), 1e-15);
+}
+
+TEST(RodClasses, GiveWhatTheRodDoesNotSay) {
+  const auto scene = scene_of(R"(
+    <cprsim:rod_class name="soft" class="steel">
+      <material><youngs_modulus>1e9</youngs_modulus></material>
+      <damping><bending>1e-3</bending></damping>
+    </cprsim:rod_class>
+    <cprsim:rod name="other" class="soft">
+      <base attached_to="base" joint="ball"/>
+      <length>0.2</length>
+      <material><poisson_ratio>0.25</poisson_ratio></material>
+    </cprsim:rod>)");
+  const RodSpec& rod = scene->rods.at(1);
+  EXPECT_EQ(rod.section.size[0], 0.001);
+  EXPECT_EQ(rod.material->density, 8000);
+  EXPECT_EQ(rod.material->youngs_modulus, 1e9);
+  EXPECT_DOUBLE_EQ(rod.material->shear_modulus, 1e9 / 2.5);
+  EXPECT_EQ(rod.damping->bending, 1e-3);
+  EXPECT_EQ(rod.tip.joint, EndJoint::kFree);
+  EXPECT_EQ(rod.base.joint, EndJoint::kBall);
+}
+
+TEST(Loads, ActOnBodiesAndRodPoints) {
+  const auto scene = scene_of(R"(
+    <cprsim:load at='leg::tip'><force>1 0 0</force></cprsim:load>
+    <cprsim:load at='leg(s=0.25)' expressed_in='leg(s=0.25)'>
+      <force>0 1 0</force><step from='1' to='0' at='0'/>
+    </cprsim:load>
+    <cprsim:load at='plate' expressed_in='plate'><torque>0 0 1</torque></cprsim:load>)");
+  ASSERT_EQ(scene->loads.size(), 3u);
+  EXPECT_EQ(scene->loads[0].rod, 0);
+  EXPECT_EQ(scene->loads[0].rod_s, 1);
+  EXPECT_FALSE(scene->loads[0].follower);
+  EXPECT_FALSE(scene->loads[0].has_profile);
+  EXPECT_EQ(scene->loads[1].rod_s, 0.25);
+  EXPECT_TRUE(scene->loads[1].follower);
+  EXPECT_EQ(scene->loads[1].profile.evaluate(0, true).value, 1);
+  EXPECT_EQ(scene->loads[2].rod, -1);
+  EXPECT_EQ(scene->loads[2].at.body, 1);
+  EXPECT_TRUE(scene->loads[2].follower);
+}
+
+TEST(InitialVelocities, AreGivenInWorldAxes) {
+  std::string text = scene_text();
+  text.replace(text.find("<duration>"), 0,
+               "<initial solve='none'><velocity of='robot::plate'><linear>1 2 3</linear>"
+               "<angular>0 0 4</angular></velocity></initial>");
+  const LoadResult result = load_text(text);
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_TRUE(result.scene->bodies[1].velocity_given);
+  EXPECT_EQ(result.scene->bodies[1].linear_velocity, Vec3(1, 2, 3));
+  EXPECT_EQ(result.scene->bodies[1].angular_velocity, Vec3(0, 0, 4));
+}
+
+TEST(Includes, BringAModelUnderItsNameAndPose) {
+  const auto folder = std::filesystem::temp_directory_path() / "cprsim_include_test";
+  std::filesystem::create_directories(folder / "post");
+  std::ofstream(folder / "post/model.sdf")
+      << "<sdf version='1.11'><model name='post'><static>true</static>"
+         "<link name='l'><pose>0 0 1 0 0 0</pose></link><frame name='top' attached_to='l'>"
+         "<pose>0 0 0.5 0 0 0</pose></frame></model></sdf>";
+  LoadOptions options;
+  options.resource_paths = {folder.string()};
+  const LoadResult result = load_text(
+      scene_text(
+          "",
+          "<include><uri>model://post</uri><name>left</name><pose>3 0 0 0 0 0</pose></include>"
+          "<include><uri>model://post</uri><name>right</name><pose>9 0 0 0 0 0</pose>"
+          "<placement_frame>top</placement_frame></include>"),
+      options);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene->bodies.at(2).name, "left::l");
+  EXPECT_TRUE(result.scene->bodies.at(2).is_static);
+  EXPECT_LT((result.scene->bodies[2].X_WB.p - Vec3(3, 0, 1)).norm(), 1e-15);
+  EXPECT_LT((result.scene->bodies.at(3).X_WB.p - Vec3(9, 0, -0.5)).norm(), 1e-15);
+  EXPECT_EQ(result.scene->files.size(), 3u);
+}
+
+TEST(Effects, GivenButNotListedAreNoted) {
+  const LoadResult result = load_text(scene_text(R"(
+    <cprsim:rod name="other" class="steel"><base attached_to="base" joint="fixed"/><length>0.2</length>
+      <damping><bending>1e-3</bending></damping></cprsim:rod>)"));
+  EXPECT_TRUE(result.scene);
+  EXPECT_TRUE(has_code(result, "W511"));
+}
+
+TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
+  const std::string text = scene_text("", "<road name='r'><width>1</width></road>");
+  EXPECT_EQ(error_codes(load_text(text)), std::vector<std::string>{"E520"});
+  LoadOptions lax;
+  lax.lax = true;
+  EXPECT_TRUE(load_text(text, lax).scene);
+  EXPECT_EQ(error_codes(load_text(scene_text("<cprsim:tendon name='t' rod='leg'/>"), lax)),
+            std::vector<std::string>{"E520"});
+}
+
+TEST(ExpectedFailures, AreReportedBesideTheErrors) {
+  const LoadResult result = load_text(scene_text(
+      "<frame name='plate'/>", "<cprsim:expect name='bad'><fails with='E401'/></cprsim:expect>"));
+  EXPECT_FALSE(result.scene);
+  EXPECT_EQ(result.expected_failure, "E401");
+  EXPECT_EQ(error_codes(result), std::vector<std::string>{"E401"});
+}
+
+TEST(Loading, ReportsAllIndependentMistakesAtOnce) {
+  std::string text = scene_text(
+      "<frame name='f' attached_to='nowhere'/><cprsim:drive rod='lag' "
+      "quantity='length'><constant value='1'/></cprsim:drive>",
+      "<cprsim:video camera='none' file='../x.mp4'/>");
+  text.replace(text.find("<length>0.4"), 11, "<length>-4");
+  const std::vector<std::string> expected{"E306", "E403", "E404", "E410"};
+  EXPECT_EQ(error_codes(load_text(text)), expected);
+}
+
+}  // namespace
+}  // namespace cprsim

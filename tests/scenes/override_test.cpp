@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// --set and the other options that change a scene before it is checked.
+#include <gtest/gtest.h>
+
+#include "tests/scenes/scene_text.h"
+
+namespace cprsim {
+namespace {
+
+LoadResult with(const std::string& path, const std::string& value) {
+  LoadOptions options;
+  options.set = {{path, value}};
+  return load_text(scene_text(), options);
+}
+
+TEST(Overrides, ReachElementsEntitiesAndAttributes) {
+  for (const char* path :
+       {"robot::leg/length", "robot/leg/length", "model[robot]/cprsim:rod[leg]/length",
+        "world/model[1]/rod[leg]/length"}) {
+    const LoadResult result = with(path, "0.5");
+    ASSERT_TRUE(result.scene) << path << "\n" << to_text(result.diagnostics);
+    EXPECT_EQ(result.scene->rods[0].length, 0.5) << path;
+  }
+  EXPECT_EQ(with("physics[default]/max_step_size", "0.5").scene->max_step_size, 0.5);
+  EXPECT_EQ(with("robot::leg/tip/@joint", "ball").scene->rods[0].tip.joint, EndJoint::kBall);
+}
+
+TEST(Overrides, ThatFitNothingOrSeveralPlacesListCandidates) {
+  const LoadResult nothing = with("robot::leg/lenght", "0.5");
+  EXPECT_EQ(error_codes(nothing), std::vector<std::string>{"E311"});
+  EXPECT_NE(to_text(nothing.diagnostics).find("did you mean 'length'?"), std::string::npos);
+  const LoadResult inherited = with("robot::leg/material/density", "1");
+  EXPECT_NE(to_text(inherited.diagnostics).find("cprsim:rod_class[steel]/material/density"),
+            std::string::npos)
+      << to_text(inherited.diagnostics);
+  EXPECT_EQ(error_codes(with("robot/link", "1")), std::vector<std::string>{"E311"});
+  EXPECT_EQ(error_codes(with("robot::leg", "1")), std::vector<std::string>{"E311"});
+  EXPECT_EQ(error_codes(with("", "1")), std::vector<std::string>{"E311"});
+}
+
+TEST(Overrides, AreCheckedLikeTheSceneItself) {
+  EXPECT_EQ(error_codes(with("robot::leg/length", "-1")), std::vector<std::string>{"E306"});
+  EXPECT_EQ(error_codes(with("robot::leg/length", "long")), std::vector<std::string>{"E305"});
+  EXPECT_EQ(error_codes(with("robot::leg/tip/@color", "red")), std::vector<std::string>{"E302"});
+}
+
+TEST(Options, ReplaceDurationStepAccuracyAndMethod) {
+  LoadOptions options;
+  options.duration = 7;
+  options.step = 0.25;
+  options.accuracy = 1e-4;
+  options.method = "shooting";
+  const LoadResult result = load_text(scene_text(), options);
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(result.scene->simulation.duration, 7);
+  EXPECT_EQ(result.scene->max_step_size, 0.25);
+  EXPECT_EQ(result.scene->solver.accuracy, 1e-4);
+  EXPECT_EQ(result.scene->solver.method, Method::kShooting);
+  options.duration = -1;
+  EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E306"});
+}
+
+TEST(Options, SwitchEffects) {
+  LoadOptions options;
+  options.with = {"shear"};
+  options.without = {"gravity"};
+  const LoadResult result = load_text(scene_text(), options);
+  ASSERT_TRUE(result.scene);
+  EXPECT_TRUE(result.scene->effects.has(Effect::kShear));
+  EXPECT_FALSE(result.scene->effects.has(Effect::kGravity));
+  options.with = {"sheer"};
+  EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E307"});
+  options.with = {"drag"};
+  EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E520"});
+}
+
+}  // namespace
+}  // namespace cprsim
