@@ -5,6 +5,7 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -58,6 +59,8 @@ class VtpPrinter {
     xml_.PushAttribute("type", type);
     xml_.PushAttribute("Name", name);
     xml_.PushAttribute("NumberOfComponents", components);
+    // field data has no piece that would say how many there are
+    xml_.PushAttribute("NumberOfTuples", static_cast<std::int64_t>(values.size()) / components);
     xml_.PushAttribute("format", "binary");
     xml_.PushText(encode(values).c_str());
     xml_.CloseElement();
