@@ -30,14 +30,11 @@ Pose Equations::body_pose(int body) const {
   return body < 0 ? Pose{} : robot_.bodies[static_cast<std::size_t>(body)].pose();
 }
 
-double Equations::load_factor(const LoadSpec& load) const {
-  return fraction_ * (load.has_profile ? load.profile.evaluate(t_, before_).value : 1.0);
-}
-
-PointLoad Equations::point_load(const LoadSpec& load) const {
-  const double f = load_factor(load);
-  return {load.rod_s, f * (load.R_expressed * load.force), f * (load.R_expressed * load.torque),
-          load.follower};
+PointLoad Equations::scaled_load(const LoadSpec& load) const {
+  PointLoad at = load_at(load, t_, before_);
+  at.force *= acting();
+  at.torque *= acting();
+  return at;
 }
 
 void Equations::prepare_rods() {
@@ -45,10 +42,10 @@ void Equations::prepare_rods() {
     RodForcing& forcing = rod.forcing;
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(t_, before_).value;
     forcing.length = rod.length;
-    forcing.gravity = rod.gravity ? Vec3(fraction_ * robot_.gravity) : Vec3(Vec3::Zero());
+    forcing.gravity = rod.gravity ? Vec3(acting() * robot_.gravity) : Vec3(Vec3::Zero());
     forcing.loads.clear();
     for (const LoadSpec* load : rod.loads)
-      forcing.loads.push_back(point_load(*load));
+      forcing.loads.push_back(scaled_load(*load));
     forcing.tolerance = tolerance_;
     forcing.axial_softness = softness_;
     forcing.relaxation = drag_ * rod.section.K_bt.head<2>().maxCoeff() / std::pow(rod.length, 4);
@@ -198,7 +195,7 @@ Vec6 Equations::body_rows(std::size_t b) {
   Vec6 rows = Vec6::Zero();
   Mat6& tangent = body_tangent_[b];
   tangent.setZero();
-  const RigidBody::Inertial weight = body.weight(fraction_ * robot_.gravity);
+  const RigidBody::Inertial weight = body.weight(acting() * robot_.gravity);
   rows += weight.wrench;
   tangent += weight.by_motion;
   if (rates_.dynamic()) {
@@ -222,16 +219,14 @@ void Equations::add_body_loads() {
     const auto b = static_cast<std::size_t>(load.at.body);
     const RigidBody& body = robot_.bodies[b];
     const Pose X = body.pose() * load.at.X;
-    const Mat3 axes =
-        load.spec->follower ? Mat3(X.R * load.spec->R_expressed) : load.spec->R_expressed;
-    const double f = load_factor(*load.spec);
-    const Vec3 F = f * (axes * load.spec->force), M = f * (axes * load.spec->torque),
-               arm = X.p - body.p;
+    const PointLoad now = scaled_load(*load.spec);
+    const Mat3 axes = now.follower ? X.R : Mat3(Mat3::Identity());
+    const Vec3 F = axes * now.force, M = axes * now.torque, arm = X.p - body.p;
     wrench_[b].head<3>() += M + arm.cross(F);
     wrench_[b].tail<3>() += F;
     // d(arm × F) = (phi × arm) × F, and with the axes dF = phi × F
     body_tangent_[b].topLeftCorner<3, 3>() += hat(F) * hat(arm);
-    if (!load.spec->follower) continue;
+    if (!now.follower) continue;
     body_tangent_[b].topLeftCorner<3, 3>() -= hat(M) + hat(arm) * hat(F);
     body_tangent_[b].bottomLeftCorner<3, 3>() -= hat(F);
   }

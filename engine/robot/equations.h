@@ -37,6 +37,9 @@ class Equations final : public Problem {
   /// jumps.
   void set_instant(double t, bool before, const StageRates& rates);
 
+  /// Without loads, gravity and effort drives: only assembly.
+  void set_loads(bool on) { loads_on_ = on; }
+
   /// Bodies stay where they are (rods find their shape between them).
   void hold_bodies(bool hold) { bodies_held_ = hold; }
 
@@ -82,7 +85,11 @@ class Equations final : public Problem {
 
   const StageRates& rates() const { return rates_; }
 
+  double time() const { return t_; }
+
   int unknown_count() const;
+
+  int constraint_count() const { return size_ - body_unknowns_; }
 
  private:
   struct Worst {
@@ -91,8 +98,10 @@ class Equations final : public Problem {
   };
 
   void prepare_rods();
-  double load_factor(const LoadSpec& load) const;
-  PointLoad point_load(const LoadSpec& load) const;
+
+  double acting() const { return loads_on_ ? fraction_ : 0; }
+
+  PointLoad scaled_load(const LoadSpec& load) const;
   Vec6 body_rows(std::size_t b);
   void add_rod_wrenches();
   void add_joint_wrenches();
@@ -120,6 +129,7 @@ class Equations final : public Problem {
   double fraction_ = 1, drag_ = 0, softness_ = 0;
   bool bodies_held_ = false;
   bool gaps_captured_ = false;
+  bool loads_on_ = true;
 
   // residual side
   std::vector<Vec6> wrench_;        ///< on each body

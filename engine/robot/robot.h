@@ -79,6 +79,10 @@ struct Robot {
   std::vector<Track*> tracks();
 };
 
+/// A load at time t: world axes, or those of its section or frame if it follows. `before`: left
+/// limit at a jump.
+PointLoad load_at(const LoadSpec& load, double t, bool before);
+
 /// Links that Bullet (or somebody) else integrates: movable, no joint, no rod.
 std::vector<int> free_links(const Scene& scene);
 

@@ -102,13 +102,19 @@ class RodModel {
   /// Coordinates that the time scheme integrates; fill_tracks() writes the current stage's values.
   virtual std::vector<Track*> tracks() = 0;
   virtual void fill_tracks() = 0;
+  virtual Eigen::Index position_coordinates()
+      const = 0;                     ///< how many of the first track are positions
   virtual void accept_tracks() = 0;  ///< new reference rotations after an accepted step
   virtual void start_tracks() = 0;   ///< at rest where it now is
+  /// Moving along the direction last set, taken as a velocity: the bodies' motion with the rod
+  /// following in equilibrium.
+  virtual void start_tracks_moving() = 0;
 
   /// All unknowns as a copyable value, to retry a step or to extrapolate.
   struct Unknowns {
     VecX values;
     std::vector<NodeState> starts;
+    std::vector<NodeState> nodes;  ///< as last reached: where segments may be cut differently
   };
 
   virtual Unknowns unknowns() const = 0;

@@ -59,8 +59,14 @@ class ShootingRod final : public RodModel {
   void mark_positions() override;
   std::vector<Track*> tracks() override;
   void fill_tracks() override;
+
+  Eigen::Index position_coordinates() const override {
+    return 3 * static_cast<Eigen::Index>(stages_.size() + nodes_.size());
+  }
+
   void accept_tracks() override;
   void start_tracks() override;
+  void start_tracks_moving() override;
   Unknowns unknowns() const override;
   void set_unknowns(const Unknowns& u) override;
   void predict(const std::vector<const Unknowns*>& past,

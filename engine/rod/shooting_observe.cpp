@@ -95,6 +95,53 @@ void ShootingRod::start_tracks() {
                               VecX::Zero(rotation_track_.x.size()));
 }
 
+// Velocities that a direction of the unknowns gives stages and nodes, cell by cell:
+// phi_j = phi_a + R_j J_r(Omega_j) dOmega_j, dtau_j = phi_j × tau_j + R_j dv_j, dp_j = dp_a + h sum
+// a_jk dtau_k.
+void ShootingRod::start_tracks_moving() {
+  start_tracks();
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto n = static_cast<Eigen::Index>(stages_.size());
+  const Eigen::Index strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
+  Vec3 phi = start_direction_.front().head<3>(), dp = start_direction_.front().segment<3>(3);
+  track_.v.segment<3>(3 * n) = dp;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c) {
+    const double h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+    const CellStage* stage = &stages_[c * S];
+    const double* d = &lifted_direction_[c * lifted];
+    std::vector<Vec3> dtau(S), du(S), dv(S, Vec3::Zero());
+    Vec3 dOmega_end = Vec3::Zero(), Omega_end = Vec3::Zero();
+    for (std::size_t j = 0; j < S; ++j) {
+      Vec3 dOmega = Vec3::Zero();
+      for (std::size_t k = 0; k < S; ++k)
+        dOmega += h * table_->a[j][k] * vec(d + 3 * k);
+      const Vec3 Omega = vec(stage[j].Omega), w = vec(stage[j].w), dw = vec(d + 3 * j);
+      const Mat3 R = Eigen::Map<const RowMatrix>(stage[j].R), J_r = right_jacobian(Omega);
+      du[j] = J_r * dw + right_jacobian_derivative(Omega, w) * dOmega;
+      if (law_ == CellLaw::kExtensible) dv[j] = vec(d + 3 * S + 3 * j);
+      dtau[j] = (phi + R * (J_r * dOmega)).cross(vec(stage[j].tau)) + R * dv[j];
+      dOmega_end += h * table_->b[j] * dw;
+      Omega_end += h * table_->b[j] * w;
+    }
+    for (std::size_t j = 0; j < S; ++j) {
+      Vec3 at = dp;
+      for (std::size_t k = 0; k < S; ++k)
+        at += h * table_->a[j][k] * dtau[k];
+      const auto i = 3 * static_cast<Eigen::Index>(c * S + j);
+      track_.v.segment<3>(i) = at;
+      if (!options_.damping) continue;
+      track_.v.segment<3>(strains + i) = du[j];
+      if (extensible_) track_.v.segment<3>(strains + 3 * n + i) = dv[j];
+    }
+    for (std::size_t j = 0; j < S; ++j)
+      dp += h * table_->b[j] * dtau[j];
+    phi += Mat3(rotation_of(nodes_[c + 1])) * (right_jacobian(Omega_end) * dOmega_end);
+    track_.v.segment<3>(3 * (n + static_cast<Eigen::Index>(c) + 1)) = dp;
+  }
+  track_.set_start(track_.x, VecX(track_.v));
+}
+
 RodModel::Unknowns ShootingRod::unknowns() const {
   Unknowns u;
   u.values.resize(static_cast<Eigen::Index>(6 * stages_.size()));
@@ -103,6 +150,7 @@ RodModel::Unknowns ShootingRod::unknowns() const {
     u.values.segment<3>(static_cast<Eigen::Index>(6 * j + 3)) = vec(stages_[j].v);
   }
   u.starts = starts_;
+  u.nodes = nodes_;
   return u;
 }
 
@@ -111,14 +159,14 @@ void ShootingRod::set_unknowns(const Unknowns& u) {
     std::copy_n(u.values.data() + 6 * j, 3, stages_[j].w);
     std::copy_n(u.values.data() + 6 * j + 3, 3, stages_[j].v);
   }
-  if (u.starts.size() != starts_.size()) {
-    // segments were cut differently then: same cuts again
-    const auto wanted = u.starts.size();
-    segment_first_.assign(wanted + 1, 0);
-    for (std::size_t g = 0; g <= wanted; ++g)
-      segment_first_[g] = static_cast<std::size_t>(cells_) * g / wanted;
+  if (u.starts.size() == starts_.size()) {
+    starts_ = u.starts;
+    return;
   }
-  starts_ = u.starts;
+  // segments were cut differently then
+  starts_.front() = u.starts.front();
+  for (std::size_t g = 1; g < starts_.size(); ++g)
+    starts_[g] = u.nodes[segment_first_[g]];
 }
 
 void ShootingRod::predict(const std::vector<const Unknowns*>& past,
@@ -126,8 +174,8 @@ void ShootingRod::predict(const std::vector<const Unknowns*>& past,
   assert(!past.empty() && past.size() == weights.size());
   Unknowns sum = *past.front();
   for (const Unknowns* u : past)
-    if (u->starts.size() != sum.starts.size()) {
-      set_unknowns(sum);
+    if (u->starts.size() != starts_.size()) {
+      set_unknowns(*past.back());
       return;
     }
   sum.values *= weights[0];

@@ -24,6 +24,8 @@ struct ArcTableau {
   const char* name = "";
 };
 
+constexpr ArcIntegrator kDefaultIntegrator = ArcIntegrator::kGauss6;
+
 /// The table of an integrator.
 const ArcTableau& arc_tableau(ArcIntegrator integrator);
 

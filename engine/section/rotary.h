@@ -5,7 +5,6 @@
 //   omega_t = c_w omega + omega_h,   t = R (J omega_t + omega × J omega) (2)
 #pragma once
 
-#include "engine/rod/cell.h"
 #include "engine/section/small_vector.h"
 
 namespace {  // NOLINT: as small_vector.h
@@ -28,7 +27,10 @@ inline M3 inverse(const M3& A) {
       {d * c0.x, d * c1.x, d * c2.x, d * c0.y, d * c1.y, d * c2.y, d * c0.z, d * c1.z, d * c2.z}};
 }
 
-inline void evaluate_rotary(const cprsim::CellModel& model, cprsim::CellStage& stage) {
+/// Reads rhoJ, c_v, c_w, body_rates of a cell model and R, R_start, theta_h, omega_h of its stage;
+/// fills theta, theta_t, omega, omega_t, torque and torque_phi (engine/rod/cell.h).
+template <class Model, class Stage>
+inline void evaluate_rotary(const Model& model, Stage& stage) {
   const M3 R = load_matrix(stage.R);
   const V3 theta = rotation_log(transpose(load_matrix(stage.R_start)) * R);
   const V3 theta_t = model.c_v * theta + load(stage.theta_h);

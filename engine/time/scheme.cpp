@@ -149,6 +149,15 @@ VecX Stepper::velocity_error(const Track& track) const {
   return e;
 }
 
+double Stepper::integrate(const std::vector<double>& values) const {
+  if (!table_) return 0.5 * (values.front() + values.back());
+  double sum = 0;
+  const auto first = static_cast<std::size_t>(table_->explicit_first ? 0 : 1);
+  for (std::size_t j = 0; j + first < values.size(); ++j)
+    sum += table_->a[table_->stages - 1][j] * values[j + first];
+  return sum;
+}
+
 void Stepper::accept(const std::vector<Track*>& tracks) {
   const AlphaCoefficients g = generalized_alpha(choice_.rho_inf);
   for (Track* t : tracks) {

@@ -101,6 +101,10 @@ class Stepper {
 
   int error_order() const { return table_ ? table_->embedded_order + 1 : 3; }
 
+  /// Integral over the step, per h, of a quantity known at its start and at every solve: with the
+  /// table's weights, or by the trapezoid.
+  double integrate(const std::vector<double>& values) const;
+
   void accept(const std::vector<Track*>& tracks);
 
   /// The scheme that the current step really uses ("sdirk3" for a starter).

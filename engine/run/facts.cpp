@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/run/facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/rod/shooting.h"
+#include "engine/rod/tableau.h"
+
+namespace cprsim {
+namespace {
+
+constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
+
+RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan) {
+  RodFacts f;
+  const SectionProperties& s = rod.section;
+  const double L = rod.length, EI = std::min(s.K_bt.x(), s.K_bt.y());
+  f.name = rod.spec->name;
+  f.mass = s.rhoA * L;
+  f.bending_x = s.K_bt.x();
+  f.bending_y = s.K_bt.y();
+  f.torsion = s.K_bt.z();
+  f.axial = s.K_se.z();
+  f.shear_x = s.K_se.x();
+  const double omega = s.rhoA > 0 ? std::pow(kFirstRoot / L, 2) * std::sqrt(EI / s.rhoA) : 0;
+  f.first_frequency = omega / (2 * std::numbers::pi);
+  f.buckling_load = std::pow(std::numbers::pi / (2 * L), 2) * EI;
+  const bool dynamic = scene.simulation.mode == Mode::kDynamic;
+  const double c0 = dynamic ? 1.5 / plan.step : 0;
+  f.growth_exponent = growth_exponent(s, s.K_bt, Vec3::Zero(), L, s.rhoA * c0 * c0, 0);
+  f.cells = rod.model->cells();
+  f.segments = std::clamp(static_cast<int>(std::ceil(f.growth_exponent / 6)), 1, f.cells);
+  f.unknowns = rod.model->unknown_count();
+  f.gravity_number = s.rhoA * 9.81 * std::pow(L, 3) / EI;
+  f.shear_number = s.K_se.x() > 0 ? EI / (s.K_se.x() * L * L) : 0;
+  f.extension_number = s.K_se.z() > 0 ? EI / (s.K_se.z() * L * L) : 0;
+  f.damping_ratio = omega * std::max(s.B_bt.x(), s.B_bt.y()) / (2 * EI);
+  return f;
+}
+
+}  // namespace
+
+ProblemFacts problem_facts(const Robot& robot, const Equations& equations, const StepPlan& plan) {
+  ProblemFacts facts;
+  const Scene& scene = *robot.scene;
+  facts.integrator = arc_tableau(scene.solver.integrator.value_or(kDefaultIntegrator)).name;
+  facts.scheme = scene.simulation.mode == Mode::kDynamic ? to_string(plan.scheme.kind) : "statics";
+  facts.step = plan.adaptive ? 0 : plan.step;
+  facts.body_unknowns = 6 * static_cast<int>(robot.bodies.size());
+  facts.constraint_unknowns = equations.constraint_count();
+  for (const RobotRod& rod : robot.rods)
+    facts.rods.push_back(rod_facts(rod, scene, plan));
+  return facts;
+}
+
+}  // namespace cprsim

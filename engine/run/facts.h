@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a scene will be stepped, and the numbers about its rods that people want to see before a run.
+#pragma once
+
+#include "engine/model/scene.h"
+#include "engine/robot/equations.h"
+#include "engine/run/simulation.h"
+#include "engine/time/scheme.h"
+
+namespace cprsim {
+
+struct StepPlan {
+  SchemeChoice scheme;
+  bool adaptive = false;
+  double step = 0;       ///< fixed step, or the first one
+  double tolerance = 0;  ///< local error per step relative to the longest rod
+};
+
+StepPlan plan_steps(const Scene& scene);
+
+ProblemFacts problem_facts(const Robot& robot, const Equations& equations, const StepPlan& plan);
+
+}  // namespace cprsim

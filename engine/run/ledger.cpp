@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/run/ledger.h"
+
+#include <cmath>
+
+#include "engine/math/so3.h"
+
+namespace cprsim {
+
+void EnergyLedger::collect(double t, bool before) {
+  points_.clear();
+  scalars_.clear();
+  for (const BodyLoad& load : robot_.body_loads) {
+    const Pose X = robot_.pose_of(load.at);
+    const PointLoad at = load_at(*load.spec, t, before);
+    const Mat3 axes = at.follower ? X.R : Mat3(Mat3::Identity());
+    points_.push_back({axes * at.force, axes * at.torque, X.p, X.R});
+  }
+  for (const RobotRod& rod : robot_.rods) {
+    if (rod.loads.empty() && !rod.length_drive) continue;
+    const RodSample sample = rod.model->observe();
+    for (const LoadSpec* load : rod.loads) {
+      const PointLoad at = load_at(*load, t, before);
+      const RodPoint* nearest = &sample.points.front();
+      for (const RodPoint& point : sample.points)
+        if (std::abs(point.s - load->rod_s) < std::abs(nearest->s - load->rod_s)) nearest = &point;
+      const Mat3 axes = at.follower ? nearest->rotation : Mat3(Mat3::Identity());
+      points_.push_back({axes * at.force, axes * at.torque, nearest->position, nearest->rotation});
+    }
+    if (rod.length_drive) scalars_.push_back({rod.model->energy().feed_power, rod.length});
+  }
+  for (const JointDrive& drive : robot_.joint_drives) {
+    const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
+    const Pose parent =
+        joint.parent < 0 ? Pose{} : robot_.bodies[static_cast<std::size_t>(joint.parent)].pose();
+    // what spring and damper exert is not the drive's
+    double effort = joint.axial_effort(parent);
+    if (!joint.q_unknown())
+      effort += joint.spec->spring_stiffness * (joint.q - joint.spec->spring_reference) +
+                joint.spec->damping * joint.track.v[0];
+    else
+      effort = joint.effort;
+    scalars_.push_back({effort, joint.q});
+  }
+}
+
+void EnergyLedger::sum_up() {
+  EnergySample& e = sample_;
+  e.kinetic = e.elastic = e.gravity = 0;
+  for (const RigidBody& body : robot_.bodies) {
+    e.kinetic += body.kinetic_energy();
+    e.gravity -= body.gravity_mass * robot_.gravity.dot(body.p + body.R * body.gravity_arm);
+  }
+  for (const Joint& joint : robot_.joints) {
+    const double stretch = joint.q - joint.spec->spring_reference;
+    if (joint.freedom != Joint::Freedom::kNone)
+      e.elastic += 0.5 * joint.spec->spring_stiffness * stretch * stretch;
+  }
+  for (const RobotRod& rod : robot_.rods) {
+    const RodEnergy own = rod.model->energy();
+    e.kinetic += own.kinetic;
+    e.elastic += own.elastic;
+    e.gravity += own.gravity;
+  }
+  if (free_bodies_) {
+    e.kinetic += free_bodies_->kinetic_energy();
+    e.gravity += free_bodies_->gravity_energy();
+  }
+  e.total = e.kinetic + e.elastic + e.gravity;
+  e.balance = e.total - start_ - e.work + e.dissipated;
+}
+
+double EnergyLedger::damping_power() const {
+  double power = 0;
+  for (const RobotRod& rod : robot_.rods)
+    power += rod.model->energy().damping_power;
+  for (const Joint& joint : robot_.joints)
+    if (joint.freedom != Joint::Freedom::kNone)
+      power += joint.spec->damping * joint.track.v[0] * joint.track.v[0];
+  return power;
+}
+
+void EnergyLedger::open() {
+  sample_ = {};
+  start_ = 0;
+  sum_up();
+  start_ = sample_.total;
+  sample_.balance = 0;
+}
+
+void EnergyLedger::begin_step(double t) {
+  collect(t, false);
+  points_before_ = points_;
+  scalars_before_ = scalars_;
+}
+
+void EnergyLedger::close_step(double t, double damping_loss) {
+  collect(t, true);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point &a = points_before_[i], &b = points_[i];
+    sample_.work += 0.5 * (a.force + b.force).dot(b.position - a.position);
+    if (!a.moment.isZero() || !b.moment.isZero())
+      sample_.work += 0.5 * (a.moment + b.moment).dot(log_so3(b.rotation * a.rotation.transpose()));
+  }
+  for (std::size_t i = 0; i < scalars_.size(); ++i)
+    sample_.work += 0.5 * (scalars_before_[i].effort + scalars_[i].effort) *
+                    (scalars_[i].position - scalars_before_[i].position);
+  sample_.dissipated += damping_loss;
+  sum_up();
+}
+
+}  // namespace cprsim

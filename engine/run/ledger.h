@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where energy comes from and goes: kinetic, elastic and potential energy of everything, the work
+// that drives and loads have done (trapezoidal in the displacement, which is exact for dead loads),
+// and what damping has taken out.
+#pragma once
+
+#include <vector>
+
+#include "engine/robot/free_bodies.h"
+#include "engine/robot/robot.h"
+#include "engine/run/snapshot.h"
+
+namespace cprsim {
+
+class EnergyLedger {
+ public:
+  EnergyLedger(const Robot& robot, const FreeBodies* free_bodies)
+      : robot_(robot), free_bodies_(free_bodies) {}
+
+  /// The balance counts from here.
+  void open();
+
+  /// Loads as they are from t on: after a jump they differ from what close_step saw.
+  void begin_step(double t);
+
+  /// @param damping_loss J taken out by damping during the step that ends at t.
+  void close_step(double t, double damping_loss);
+
+  /// Power that damping takes out now, W.
+  double damping_power() const;
+
+  const EnergySample& sample() const { return sample_; }
+
+ private:
+  struct Point {
+    Vec3 force, moment, position;
+    Mat3 rotation;
+  };
+
+  struct Scalar {
+    double effort, position;
+  };
+
+  void collect(double t, bool before);
+  void sum_up();
+
+  const Robot& robot_;
+  const FreeBodies* free_bodies_;
+  std::vector<Point> points_, points_before_;
+  std::vector<Scalar> scalars_, scalars_before_;
+  EnergySample sample_;
+  double start_ = 0;
+};
+
+}  // namespace cprsim

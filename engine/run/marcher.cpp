@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/run/marcher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/run/ledger.h"
+
+namespace cprsim {
+namespace {
+
+constexpr std::size_t kPastKept = 4;  // solutions the predictor may look back on
+constexpr double kLargestWeights =
+    12;  // sum of |weights|: beyond, extrapolation amplifies more than it predicts
+
+/// Lagrange weights of the given times at t.
+std::vector<double> lagrange(const std::vector<double>& times, double t) {
+  std::vector<double> w(times.size(), 1);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    for (std::size_t j = 0; j < times.size(); ++j)
+      if (j != i) w[i] *= (t - times[j]) / (times[i] - times[j]);
+  return w;
+}
+
+double sum_of_sizes(const std::vector<double>& w) {
+  double sum = 0;
+  for (double x : w)
+    sum += std::abs(x);
+  return sum;
+}
+
+}  // namespace
+
+Marcher::Marcher(Robot& robot, Equations& equations, const SchemeChoice& scheme,
+                 const SolveOptions& options)
+    : robot_(robot),
+      equations_(equations),
+      options_(options),
+      stepper_(scheme),
+      tracks_(robot.tracks()) {}
+
+void Marcher::begin() {
+  stepper_.reset();
+  past_.clear();
+  past_accepted_ = 0;
+}
+
+void Marcher::restart() {
+  begin();
+}
+
+// The guess for a solve: the past solutions, extrapolated with as many of them as stays harmless.
+void Marcher::predict(double time) {
+  for (std::size_t count = std::min(past_.size(), kPastKept); count > 1; --count) {
+    std::vector<double> times;
+    std::vector<const RobotUnknowns*> unknowns;
+    for (std::size_t i = past_.size() - count; i < past_.size(); ++i) {
+      times.push_back(past_[i].time);
+      unknowns.push_back(&past_[i].unknowns);
+    }
+    bool distinct = true;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        distinct = distinct && std::abs(times[i] - times[j]) > 1e-3 * h_;
+    if (!distinct) continue;
+    const std::vector<double> weights = lagrange(times, time);
+    if (sum_of_sizes(weights) > kLargestWeights) continue;
+    equations_.predict(unknowns, weights);
+    return;
+  }
+  if (!past_.empty()) equations_.set_unknowns(past_.back().unknowns);
+}
+
+// Newton from the prediction; failing that, from where the step began; failing that,
+// Levenberg-Marquardt.
+SolveReport Marcher::solve_stage(double time) {
+  predict(time);
+  SolveReport report = newton(equations_, options_);
+  if (report.converged()) return report;
+  const int spent = report.iterations;
+  equations_.set_unknowns(start_);
+  report = newton(equations_, options_);
+  if (!report.converged()) {
+    equations_.set_unknowns(start_);
+    const int more = report.iterations;
+    report = levenberg_marquardt(equations_, options_);
+    report.iterations += more;
+  }
+  report.iterations += spent;
+  return report;
+}
+
+void Marcher::finish_stage(int i) {
+  for (RigidBody& body : robot_.bodies)
+    body.fill_tracks(rates_);
+  for (Joint& joint : robot_.joints)
+    joint.track.x[0] = joint.q;
+  for (RobotRod& rod : robot_.rods)
+    rod.model->fill_tracks();
+  stepper_.finish_stage(i, tracks_);
+}
+
+Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger) {
+  Outcome out;
+  h_ = h;
+  start_ = equations_.unknowns();
+  if (past_.empty()) past_.push_back({t, start_});
+  past_accepted_ = past_.size();
+  const int stages = stepper_.begin_step(h, tracks_);
+  double last_fraction = 0, last_power = ledger.damping_power();
+  std::vector<double> fractions{0}, powers{last_power};
+  for (int i = 0; i < stages; ++i) {
+    rates_ = stepper_.begin_stage(i, tracks_);
+    last_fraction = stepper_.stage_time(i);
+    const double time = t + last_fraction * h;
+    // the end of a step may be a jump: the step itself sees what was before
+    equations_.set_instant(time, true, rates_);
+    SolveReport report = solve_stage(time);
+    report.iterations += out.report.iterations;
+    report.evaluations += out.report.evaluations;
+    report.factorizations += out.report.factorizations;
+    report.residual = std::max(report.residual, out.report.residual);
+    out.report = report;
+    if (!report.converged()) return out;
+    finish_stage(i);
+    past_.push_back({time, equations_.unknowns()});
+    fractions.push_back(last_fraction);
+    powers.push_back(ledger.damping_power());
+  }
+  out.converged = true;
+  out.error = error_estimate();
+  out.damping_loss = stepper_.integrate(powers) * h;
+  return out;
+}
+
+// Largest estimated error of a position (per length), a rotation, and of what velocities would add
+// over the step.
+double Marcher::error_estimate() const {
+  if (!stepper_.has_error_estimate()) return 0;
+  double error = 0;
+  auto add = [&](const Track& track, Eigen::Index n, double unit) {
+    error = std::max(error, stepper_.position_error(track).head(n).cwiseAbs().maxCoeff() / unit);
+    error =
+        std::max(error, h_ * stepper_.velocity_error(track).head(n).cwiseAbs().maxCoeff() / unit);
+  };
+  for (const RigidBody& body : robot_.bodies) {
+    add(body.position, 3, robot_.scale.length);
+    add(body.rotation, 3, 1);
+  }
+  for (const RobotRod& rod : robot_.rods)
+    add(*rod.model->tracks().front(), rod.model->position_coordinates(), rod.length);
+  return error;
+}
+
+void Marcher::accept(double, double) {
+  stepper_.accept(tracks_);
+  for (RigidBody& body : robot_.bodies)
+    body.accept_tracks();
+  for (RobotRod& rod : robot_.rods)
+    rod.model->accept_tracks();
+  while (past_.size() > kPastKept)
+    past_.pop_front();
+}
+
+void Marcher::reject() {
+  past_.resize(past_accepted_);
+  equations_.set_unknowns(start_);
+}
+
+}  // namespace cprsim

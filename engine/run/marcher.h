@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One time step of the Newton system: the scheme's stages, each a solve started from an
+// extrapolated guess, the error estimate, and acceptance. A step that fails leaves the robot as it
+// was.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "engine/robot/equations.h"
+#include "engine/solve/newton.h"
+#include "engine/time/scheme.h"
+
+namespace cprsim {
+
+class EnergyLedger;
+
+class Marcher {
+ public:
+  Marcher(Robot& robot, Equations& equations, const SchemeChoice& scheme,
+          const SolveOptions& options);
+
+  /// After the start state is set: tracks at rest or moving, no history.
+  void begin();
+
+  /// Forgets history: called at every jump.
+  void restart();
+
+  struct Outcome {
+    bool converged = false;
+    SolveReport report;  ///< of the last solve; iterations and counts summed over the step
+    double error = 0;    ///< estimated local error, dimensionless (length: rod length; angle: rad)
+    double damping_loss = 0;  ///< J
+  };
+
+  /// Tries a step of size h from t. Nothing is final before accept().
+  Outcome attempt(double t, double h, const EnergyLedger& ledger);
+  void accept(double t, double h);
+  void reject();
+
+  bool estimates_error() const { return stepper_.has_error_estimate(); }
+
+  int error_order() const { return stepper_.error_order(); }
+
+  const char* step_name() const { return stepper_.step_name(); }
+
+ private:
+  struct Solved {
+    double time;
+    RobotUnknowns unknowns;
+  };
+
+  void predict(double time);
+  SolveReport solve_stage(double time);
+  double error_estimate() const;
+  void finish_stage(int i);
+
+  Robot& robot_;
+  Equations& equations_;
+  SolveOptions options_;
+  Stepper stepper_;
+  std::vector<Track*> tracks_;
+  std::deque<Solved> past_;        ///< accepted and stage solutions, oldest first
+  std::size_t past_accepted_ = 0;  ///< how many of them are older than the step under way
+  RobotUnknowns start_;
+  StageRates rates_;
+  double h_ = 0;
+};
+
+}  // namespace cprsim

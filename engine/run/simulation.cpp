@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/run/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/robot/equations.h"
+#include "engine/robot/free_bodies.h"
+#include "engine/run/facts.h"
+#include "engine/run/ledger.h"
+#include "engine/run/marcher.h"
+#include "engine/run/observation.h"
+
+namespace cprsim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// A static solve has one point to get right; more iterations than a time step may have.
+SolveOptions static_options(const SolverSpec& spec) {
+  return {spec.residual_tolerance.value_or(1e-9), std::max(40, spec.max_iterations.value_or(0)),
+          1e30};
+}
+
+SolveOptions step_options(const SolverSpec& spec) {
+  return {spec.residual_tolerance.value_or(1e-9), spec.max_iterations.value_or(15), 1e30};
+}
+
+bool embedded(SchemeKind kind) {
+  return kind == SchemeKind::kTrBdf2 || kind == SchemeKind::kEsdirk32 ||
+         kind == SchemeKind::kEsdirk43;
+}
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+}  // namespace
+
+StepPlan plan_steps(const Scene& scene) {
+  StepPlan plan;
+  const SolverSpec& spec = scene.solver;
+  plan.scheme.kind = spec.scheme.value_or(SchemeKind::kEsdirk32);
+  plan.scheme.alpha = spec.alpha.value_or(-0.4);
+  plan.scheme.rho_inf = spec.rho_inf.value_or(0.8);
+  plan.adaptive = embedded(plan.scheme.kind) && !spec.step;
+  plan.step = spec.step.value_or(scene.max_step_size);
+  if (!plan.adaptive) return plan;
+  plan.tolerance = spec.tolerance.value_or(1e-5);
+  if (spec.accuracy && !spec.tolerance) {
+    double length = 0;
+    for (const RodSpec& rod : scene.rods)
+      length = std::max(length, rod.length);
+    plan.tolerance = *spec.accuracy / (length > 0 ? length : 1);
+  }
+  return plan;
+}
+
+struct Simulation::Parts {
+  const Scene& scene;
+  std::unique_ptr<FreeBodies> free_bodies;
+  Robot robot;
+  Equations equations;
+  StepPlan plan;
+  Marcher marcher;
+  EnergyLedger ledger;
+  ProblemFacts facts;
+
+  RunStatus status = RunStatus::kRunning;
+  double t = 0, end = 0, h = 0;
+  double last_error = 0;
+  std::vector<double> breaks;
+  std::string failure;
+  SolveReport report;
+  RunStatistics statistics;
+  Snapshot now, before;
+
+  Parts(const Scene& s, std::unique_ptr<FreeBodies> free)
+      : scene(s),
+        free_bodies(std::move(free)),
+        robot(build_robot(s)),
+        equations(robot, s.solver.residual_tolerance.value_or(1e-9)),
+        plan(plan_steps(s)),
+        marcher(robot, equations, plan.scheme, step_options(s.solver)),
+        ledger(robot, free_bodies.get()) {
+    h = plan.adaptive ? std::min(plan.step, 1e-3) : plan.step;
+    if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
+    collect_breaks();
+  }
+
+  void collect_breaks() {
+    auto take = [&](const Profile& profile) {
+      for (double b : profile.breakpoints(end))
+        breaks.push_back(b);
+    };
+    for (const DriveSpec& drive : scene.drives)
+      take(drive.profile);
+    for (const LoadSpec& load : scene.loads)
+      if (load.has_profile) take(load.profile);
+    breaks.push_back(end);
+    std::sort(breaks.begin(), breaks.end());
+  }
+
+  bool free_only() const { return robot.rods.empty() && robot.bodies.empty(); }
+
+  void fail(const std::string& what) {
+    status = RunStatus::kFailed;
+    failure = what + ": " + to_string(report.status) + " after " +
+              std::to_string(report.iterations) + " iterations, residual " +
+              number(report.residual) + " in " + report.worst_row;
+  }
+
+  void count(const SolveReport& r) {
+    statistics.iterations += r.iterations;
+    statistics.max_iterations = std::max<long>(statistics.max_iterations, r.iterations);
+    statistics.section_evaluations += r.evaluations;
+    statistics.factorizations += r.factorizations;
+    if (r.converged()) statistics.worst_residual = std::max(statistics.worst_residual, r.residual);
+  }
+
+  void observe(double step, double wall) {
+    before = std::move(now);
+    now = take_snapshot(robot, free_bodies.get(), t);
+    now.energy = ledger.sample();
+    now.solver = {report.iterations, report.residual, step, wall};
+  }
+
+  bool find_equilibrium() {
+    equations.set_instant(t, true, StageRates{});
+    equations.mark_start();
+    report = solve_statics(equations, static_options(scene.solver));
+    count(report);
+    if (!report.converged()) fail("no static equilibrium found");
+    return report.converged();
+  }
+
+  /// Rods find their unloaded shape between bodies that stay where the scene puts them.
+  bool assemble() {
+    equations.hold_bodies(true);
+    equations.set_loads(false);
+    const bool found = find_equilibrium();
+    equations.hold_bodies(false);
+    equations.set_loads(true);
+    if (!found) failure = "the rods cannot be assembled: " + failure;
+    return found;
+  }
+
+  void start_motion() {
+    bool moving = false;
+    std::vector<Vec6> motions;
+    for (RigidBody& body : robot.bodies) {
+      const BodySpec& link = scene.bodies[static_cast<std::size_t>(body.links.front())];
+      const Pose X = robot.link_pose(static_cast<std::size_t>(body.links.front()));
+      const Vec3 w = link.velocity_given ? link.angular_velocity : Vec3(Vec3::Zero());
+      const Vec3 v = link.velocity_given ? Vec3(link.linear_velocity + w.cross(body.p - X.p))
+                                         : Vec3(Vec3::Zero());
+      body.start_tracks(v, body.R.transpose() * w);
+      Vec6 motion;
+      motion << w, v;
+      motions.push_back(motion);
+      moving = moving || link.velocity_given;
+    }
+    for (Joint& joint : robot.joints)
+      joint.track.set_start(VecX::Constant(1, joint.q), VecX::Zero(1));
+    if (moving) moving = equations.follow_bodies(motions);
+    for (RobotRod& rod : robot.rods) {
+      if (moving)
+        rod.model->start_tracks_moving();
+      else
+        rod.model->start_tracks();
+    }
+    marcher.begin();
+  }
+
+  /// The next instant at which something jumps, or the end.
+  double next_break() const {
+    const auto at = std::upper_bound(breaks.begin(), breaks.end(), t * (1 + 1e-12) + 1e-15);
+    return at == breaks.end() ? end : *at;
+  }
+
+  void step_dynamic();
+  void step_quasistatic();
+  double controlled(double step, double error) const;
+  void arrive(double t_new, double h_used, const Marcher::Outcome& outcome);
+};
+
+Simulation::Simulation(const Scene& scene, std::unique_ptr<FreeBodies> free_bodies) {
+  const auto begin = Clock::now();
+  parts_ = std::make_unique<Parts>(scene, std::move(free_bodies));
+  parts_->facts = problem_facts(parts_->robot, parts_->equations, parts_->plan);
+  parts_->statistics.build_seconds = seconds_since(begin);
+}
+
+Simulation::~Simulation() = default;
+
+const ProblemFacts& Simulation::facts() const {
+  return parts_->facts;
+}
+
+const SolveReport& Simulation::start() {
+  Parts& p = *parts_;
+  const auto begin = Clock::now();
+  const bool equilibrium =
+      p.scene.simulation.mode != Mode::kDynamic || p.scene.simulation.initial_static;
+  if (!p.free_only() && !(equilibrium ? p.find_equilibrium() : p.assemble())) {
+    p.observe(0, seconds_since(begin));
+    return p.report;
+  }
+  if (!p.free_only()) p.start_motion();
+  p.ledger.open();
+  p.statistics.start_seconds = seconds_since(begin);
+  p.observe(0, p.statistics.start_seconds);
+  p.before = p.now;
+  if (p.end <= 0) p.status = RunStatus::kDone;
+  return p.report;
+}
+
+// PI control (Söderlind, ACM TOMS 29, 2003) with the usual limits.
+double Simulation::Parts::controlled(double step, double error) const {
+  const double k = marcher.error_order();
+  const double now_ratio = plan.tolerance / std::max(error, 1e-14);
+  const double old_ratio =
+      last_error > 0 ? plan.tolerance / std::max(last_error, 1e-14) : now_ratio;
+  const double factor = 0.9 * std::pow(now_ratio, 0.7 / k) * std::pow(old_ratio, -0.4 / k) *
+                        std::pow(now_ratio, 0.3 / k);
+  return step * std::clamp(factor, 0.2, 4.0);
+}
+
+void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outcome& outcome) {
+  const double from = t;
+  marcher.accept(from, h_used);
+  t = t_new;
+  report = outcome.report;
+  count(report);
+  if (free_bodies) free_bodies->advance(h_used, link_motions(robot, free_bodies.get()));
+  ledger.close_step(t, outcome.damping_loss);
+  ++statistics.steps;
+  statistics.largest_step = std::max(statistics.largest_step, h_used);
+  statistics.smallest_step =
+      statistics.steps == 1 ? h_used : std::min(statistics.smallest_step, h_used);
+  if (t >= end) status = RunStatus::kDone;
+}
+
+void Simulation::Parts::step_dynamic() {
+  const int retries = scene.solver.halve_on_failure ? scene.solver.retries : 0;
+  const double stop = next_break();
+  ledger.begin_step(t);
+  double target = h;
+  if (plan.adaptive && free_bodies) target = std::min(target, scene.max_step_size);
+  for (int failures = 0;; ++failures) {
+    const double left = stop - t;
+    // land on the break; in adaptive mode without leaving a sliver
+    double step = target >= left * (1 - 1e-9) ? left : target;
+    if (plan.adaptive && step < left && left < 2 * step) step = 0.5 * left;
+    const Marcher::Outcome outcome = marcher.attempt(t, step, ledger);
+    if (outcome.converged && (!plan.adaptive || outcome.error <= plan.tolerance)) {
+      const bool landed = step == left;
+      if (plan.adaptive) {
+        const double next = controlled(step, outcome.error);
+        h = landed && step < 0.5 * target ? std::max(target, next) : next;
+        last_error = outcome.error;
+      }
+      arrive(landed ? stop : t + step, step, outcome);
+      if (landed && t < end) {
+        marcher.restart();
+        last_error = 0;
+        if (plan.adaptive) h = std::min(h, 1e-3);
+      }
+      return;
+    }
+    marcher.reject();
+    if (outcome.converged) {
+      ++statistics.rejected;
+      failures = -1;
+      target = controlled(step, outcome.error);
+      last_error = 0;
+      if (target > 1e-12 * std::max(1.0, end)) continue;
+    }
+    report = outcome.report;
+    if (failures >= retries || target <= 1e-12 * std::max(1.0, end)) {
+      fail("step failed at t = " + number(t) + " s with a step of " + number(step) + " s");
+      return;
+    }
+    ++statistics.retried;
+    target = 0.5 * step;
+  }
+}
+
+void Simulation::Parts::step_quasistatic() {
+  const double stop = next_break();
+  double target = plan.step;
+  const RobotUnknowns start = equations.unknowns();
+  const double from = t;
+  ledger.begin_step(t);
+  for (int failures = 0;; ++failures) {
+    const double step = std::min(target, stop - from);
+    t = step >= (stop - from) * (1 - 1e-9) ? stop : from + step;
+    equations.set_instant(t, true, StageRates{});
+    report = newton(equations, static_options(scene.solver));
+    if (!report.converged()) {
+      equations.set_unknowns(start);
+      report = levenberg_marquardt(equations, static_options(scene.solver));
+    }
+    count(report);
+    if (report.converged()) {
+      Marcher::Outcome outcome;
+      outcome.report = report;
+      start_motion();
+      ledger.close_step(t, 0);
+      ++statistics.steps;
+      if (t >= end) status = RunStatus::kDone;
+      return;
+    }
+    equations.set_unknowns(start);
+    t = from;
+    if (failures >= scene.solver.retries) {
+      fail("no equilibrium found beyond t = " + number(from) + " s");
+      return;
+    }
+    ++statistics.retried;
+    target = 0.5 * step;
+  }
+}
+
+const SolveReport& Simulation::advance() {
+  Parts& p = *parts_;
+  const auto begin = Clock::now();
+  const double from = p.t;
+  if (p.free_only()) {
+    const double step = std::min(p.plan.step, p.end - p.t);
+    p.ledger.begin_step(p.t);
+    p.arrive(p.t + step >= p.end * (1 - 1e-12) ? p.end : p.t + step, step, {});
+  } else if (p.scene.simulation.mode == Mode::kQuasistatic) {
+    p.step_quasistatic();
+  } else {
+    p.step_dynamic();
+  }
+  const double wall = seconds_since(begin);
+  p.statistics.step_seconds += wall;
+  if (p.status != RunStatus::kFailed) p.observe(p.t - from, wall);
+  return p.report;
+}
+
+RunStatus Simulation::status() const {
+  return parts_->status;
+}
+
+double Simulation::time() const {
+  return parts_->t;
+}
+
+double Simulation::end_time() const {
+  return parts_->end;
+}
+
+const std::string& Simulation::failure() const {
+  return parts_->failure;
+}
+
+const SolveReport& Simulation::last_report() const {
+  return parts_->report;
+}
+
+const RunStatistics& Simulation::statistics() const {
+  return parts_->statistics;
+}
+
+const Snapshot& Simulation::now() const {
+  return parts_->now;
+}
+
+const Snapshot& Simulation::before() const {
+  return parts_->before;
+}
+
+}  // namespace cprsim
