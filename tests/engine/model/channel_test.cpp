@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/model/channel.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/model/scene.h"
+
+namespace cprsim {
+namespace {
+
+Scene robot() {
+  Scene scene;
+  scene.bodies.resize(2);
+  scene.bodies[0].name = "robot::base";
+  scene.bodies[1].name = "robot::platform";
+  scene.rods.resize(2);
+  scene.rods[0].name = "robot::leg_1";
+  scene.rods[1].name = "robot::leg_2";
+  scene.joints.resize(2);
+  scene.joints[0].name = "robot::slide";
+  scene.joints[0].kind = JointKind::kPrismatic;
+  scene.joints[1].name = "robot::weld";
+  scene.frames.push_back({"robot::tool", {}});
+  return scene;
+}
+
+std::vector<std::string> names(const std::string& pattern) {
+  std::vector<std::string> all;
+  for (const Channel& channel : find_channels(robot(), pattern))
+    all.push_back(channel.name);
+  return all;
+}
+
+TEST(Channels, ExpandAPoseToPositionAndQuaternion) {
+  const std::vector<std::string> expected{
+      "robot::platform.position.x",    "robot::platform.position.y",
+      "robot::platform.position.z",    "robot::platform.orientation.x",
+      "robot::platform.orientation.y", "robot::platform.orientation.z",
+      "robot::platform.orientation.w"};
+  EXPECT_EQ(names("robot::platform.pose"), expected);
+}
+
+TEST(Channels, SelectComponentsAndGlobs) {
+  EXPECT_EQ(names("robot::leg_*.length"),
+            (std::vector<std::string>{"robot::leg_1.length", "robot::leg_2.length"}));
+  EXPECT_EQ(names("robot::leg_1.base.wrench.force.x"),
+            std::vector<std::string>{"robot::leg_1.base.wrench.force.x"});
+  EXPECT_EQ(names("robot::leg_1.base.wrench").size(), 6u);
+  EXPECT_EQ(names("energy.*").size(), 7u);
+  EXPECT_EQ(names("robot::slide.*").size(), 3u);
+  EXPECT_EQ(names("robot::*.position.x").size(),
+            3u);  // bodies and frames; a joint's position has no components
+}
+
+TEST(Channels, NamePointsOfARod) {
+  const auto at = find_channels(robot(), "robot::leg_2(s=0.25).position");
+  ASSERT_EQ(at.size(), 3u);
+  EXPECT_EQ(at[1].name, "robot::leg_2(s=0.25).position.y");
+  EXPECT_EQ(at[1].entity, ChannelEntity::kRodPoint);
+  EXPECT_EQ(at[1].index, 1);
+  EXPECT_EQ(at[1].s, 0.25);
+  EXPECT_EQ(at[1].component, 1);
+  const auto tip = find_channels(robot(), "robot::leg_1.tip.position");
+  ASSERT_EQ(tip.size(), 3u);
+  EXPECT_EQ(tip[0].s, 1);
+  EXPECT_EQ(names("robot::leg_1.shape").size(), 33u);
+  EXPECT_EQ(find_channels(robot(), "robot::leg_1.shape")[3].s, 0.1);
+}
+
+TEST(Channels, HaveUnits) {
+  EXPECT_EQ(find_channels(robot(), "robot::slide.position")[0].unit, "m");
+  EXPECT_EQ(find_channels(robot(), "robot::slide.effort")[0].unit, "N");
+  EXPECT_EQ(find_channels(robot(), "robot::leg_1.tip.wrench.moment.y")[0].unit, "N m");
+  EXPECT_EQ(find_channels(robot(), "solver.wall_time")[0].unit, "s");
+}
+
+TEST(Channels, ThatDoNotExistAreNotFound) {
+  for (const char* pattern :
+       {"", ".", "robot::platform", "robot::platform.", "robot::platform.mass",
+        "robot::weld.position", "robot::leg_1(s=2).position", "robot::leg_1(s=x).position",
+        "robot::leg_1(s=0.5)", "robot::platform(s=0.5).position", "energy.heat"})
+    EXPECT_TRUE(names(pattern).empty()) << pattern;
+}
+
+TEST(Channels, MisspeltAreAnsweredWithTheNearest) {
+  EXPECT_EQ(nearest_channels(robot(), "robot::platfrom.position", 1)[0],
+            "robot::platform.position");
+  EXPECT_EQ(nearest_channels(robot(), "robot::leg_1.lenght", 1)[0], "robot::leg_1.length");
+  EXPECT_EQ(nearest_channels(robot(), "energy.totl", 1)[0], "energy.total");
+  EXPECT_EQ(nearest_channels(robot(), "x", 3).size(), 3u);
+}
+
+}  // namespace
+}  // namespace cprsim
