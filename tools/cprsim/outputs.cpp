@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "render/film.h"
 #include "tools/cprsim/stopwatch.h"
 #include "tools/sinks/film_sink.h"
+#include "tools/sinks/frame_sink.h"
 #include "tools/sinks/output_file.h"
 #include "tools/sinks/recording.h"
 #include "tools/sinks/still_sink.h"
@@ -58,14 +60,31 @@ void Outputs::add_films(const Scene& scene, const RunOptions& options, const Con
     const bool replaced = asked_for && i == 0;
     const fs::path file = replaced ? fs::path(options.video) : claim(videos_[i].file);
     try {
-      auto film = std::make_unique<FilmSink>(scene, videos_[i], file, report_name(file, folder_));
-      drawn_by_ = film->device();
-      sinks_.push_back(std::move(film));
+      add_film(scene, videos_[i], file, replaced, console);
     } catch (const std::runtime_error& error) {
       if (replaced) throw;
       console.warn("no film " + file.string() + ": " + error.what());
     }
   }
+}
+
+void Outputs::add_film(const Scene& scene, const VideoSpec& video, const fs::path& file,
+                       bool insist, const Console& console) {
+  const std::string why_not = film_unavailable();
+  if (why_not.empty() || insist) {
+    auto film = std::make_unique<FilmSink>(scene, video, file, report_name(file, folder_));
+    drawn_by_ = film->device();
+    sinks_.push_back(std::move(film));
+    return;
+  }
+  fs::path frames = file;
+  frames.replace_extension();
+  frames += "_frames";
+  auto sink = std::make_unique<FrameSink>(scene, video, frames, report_name(frames, folder_));
+  drawn_by_ = sink->device();
+  sinks_.push_back(std::move(sink));
+  console.warn(why_not + "; writing the frames of " + file.string() +
+               " instead, to be encoded by\n  " + encode_command(video, frames, file));
 }
 
 fs::path Outputs::claim(const std::string& name) {
@@ -87,7 +106,7 @@ fs::path Outputs::claim(const std::string& name) {
 void Outputs::begin(const Snapshot& start) {
   const Stopwatch watch;
   expectations_.begin(start);
-  ledger_.begin(start);
+  extremes_.begin(start);
   for (const auto& sink : sinks_)
     sink->begin(start);
   seconds_ += watch.seconds();
@@ -96,7 +115,7 @@ void Outputs::begin(const Snapshot& start) {
 void Outputs::step(const Snapshot& before, const Snapshot& now) {
   const Stopwatch watch;
   expectations_.step(before, now);
-  ledger_.step(before, now);
+  extremes_.step(before, now);
   for (const auto& sink : sinks_)
     sink->step(before, now);
   seconds_ += watch.seconds();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that looks on while a run goes: recordings, films, stills, expectations, the ledger.
+// All that looks on while a run goes: recordings, films, stills, expectations, the extremes.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include "engine/model/scene.h"
 #include "tools/cprsim/console.h"
 #include "tools/cprsim/expectations.h"
-#include "tools/cprsim/ledger.h"
+#include "tools/cprsim/extremes.h"
 #include "tools/cprsim/run_options.h"
 #include "tools/sinks/sink.h"
 
@@ -33,7 +33,7 @@ class Outputs {
 
   const Expectations& expectations() const { return expectations_; }
 
-  const Ledger& ledger() const { return ledger_; }
+  const Extremes& extremes() const { return extremes_; }
 
   const std::string& drawn_by() const { return drawn_by_; }  ///< empty: no film
 
@@ -42,6 +42,9 @@ class Outputs {
  private:
   void add_recordings(const Scene& scene);
   void add_films(const Scene& scene, const RunOptions& options, const Console& console);
+  /// @param insist a film or an error; otherwise PNG frames where there is no encoder
+  void add_film(const Scene& scene, const VideoSpec& video, const std::filesystem::path& file,
+                bool insist, const Console& console);
   void add_stills(const Scene& scene, const RunOptions& options);
   /// A file that the scene names: it may not leave the folder, nor be named twice.
   std::filesystem::path claim(const std::string& name);
@@ -51,7 +54,7 @@ class Outputs {
   std::vector<VideoSpec> videos_;  ///< films refer to these
   std::vector<std::unique_ptr<Sink>> sinks_;
   Expectations expectations_;
-  Ledger ledger_;
+  Extremes extremes_;
   std::string drawn_by_;
   double seconds_ = 0;
 };

@@ -116,7 +116,7 @@ void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
     report.likely_causes =
         likely_causes(run.scene, report.facts, report.last_solve, report.time, started);
   }
-  report.ledger = outputs.ledger();
+  report.extremes = outputs.extremes();
   report.expectations = outputs.expectations().results(report.end == RunEnd::kDone);
   report.files = outputs.files();
   report.exit_code = exit_code_of(run);

@@ -107,8 +107,8 @@ Json statistics_json(const RunStatistics& statistics) {
           {"worst_residual", statistics.worst_residual}};
 }
 
-Json energy_json(const Ledger& ledger) {
-  const EnergySample& energy = ledger.energy();
+Json energy_json(const Extremes& extremes) {
+  const EnergySample& energy = extremes.energy();
   Json json = {{"kinetic", energy.kinetic},
                {"elastic", energy.elastic},
                {"gravity", energy.gravity},
@@ -116,10 +116,10 @@ Json energy_json(const Ledger& ledger) {
                {"work", energy.work},
                {"total", energy.total},
                {"balance", energy.balance},
-               {"worst_balance", ledger.worst_balance()},
-               {"exchanged", ledger.exchanged()}};
-  if (ledger.exchanged() > 0) {
-    json["worst_relative_balance"] = ledger.worst_balance() / ledger.exchanged();
+               {"worst_balance", extremes.worst_balance()},
+               {"exchanged", extremes.exchanged()}};
+  if (extremes.exchanged() > 0) {
+    json["worst_relative_balance"] = extremes.worst_balance() / extremes.exchanged();
   }
   return json;
 }
@@ -199,8 +199,8 @@ std::string to_json(const Scene& scene, const RunReport& report) {
                {"time", report.time},
                {"end_time", report.end_time},
                {"statistics", statistics_json(report.statistics)},
-               {"energy", energy_json(report.ledger)},
-               {"largest_penetration", report.ledger.deepest_penetration()},
+               {"energy", energy_json(report.extremes)},
+               {"largest_penetration", report.extremes.deepest_penetration()},
                {"warnings", diagnostics_json(report.diagnostics, Severity::kWarning)},
                {"expectations", Json::array()},
                {"files", Json::array()}};

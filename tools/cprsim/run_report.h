@@ -11,7 +11,7 @@
 #include "engine/run/simulation.h"
 #include "scenes/loader/diagnostic.h"
 #include "tools/cprsim/expectations.h"
-#include "tools/cprsim/ledger.h"
+#include "tools/cprsim/extremes.h"
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
@@ -46,7 +46,7 @@ struct RunReport {
   std::string failure;  ///< a sentence, if end is not kDone
   SolveReport last_solve;
   std::vector<std::string> likely_causes;
-  Ledger ledger;
+  Extremes extremes;
   std::vector<Diagnostic> diagnostics;
   std::vector<ExpectResult> expectations;
   std::vector<WrittenFile> files;  ///< without run.json

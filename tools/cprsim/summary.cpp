@@ -54,17 +54,17 @@ std::string solver_line(const Scene& scene, const RunReport& report) {
 }
 
 std::string energy_line(const Scene& scene, const RunReport& report) {
-  const Ledger& ledger = report.ledger;
+  const Extremes& extremes = report.extremes;
   if (scene.simulation.mode == Mode::kStatic) {
-    return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity\n", ledger.energy().elastic,
-                       ledger.energy().gravity);
+    return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity\n",
+                       extremes.energy().elastic, extremes.energy().gravity);
   }
-  if (ledger.exchanged() <= 0) return "  energy     nothing moved\n";
-  const char* of = ledger.exchanged() == ledger.largest_work()      ? "work done"
-                   : ledger.exchanged() == ledger.largest_kinetic() ? "largest kinetic energy"
-                                                                    : "energy dissipated";
+  if (extremes.exchanged() <= 0) return "  energy     nothing moved\n";
+  const char* of = extremes.exchanged() == extremes.largest_work()      ? "work done"
+                   : extremes.exchanged() == extremes.largest_kinetic() ? "largest kinetic energy"
+                                                                        : "energy dissipated";
   return fmt::format("  energy     balance closes to {:.1e} of the {}\n",
-                     ledger.worst_balance() / ledger.exchanged(), of);
+                     extremes.worst_balance() / extremes.exchanged(), of);
 }
 
 std::string check_line(const CheckResult& check) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One picture of a run at a given instant, or of its last state.
+// One picture of a run at a given instant, or of its last state, as the scene's first video shows
+// it.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
-#include "engine/model/scene.h"
-#include "render/renderer.h"
 #include "tools/sinks/sink.h"
+#include "tools/sinks/view.h"
 
 namespace cprsim {
 
@@ -24,15 +24,13 @@ class StillSink : public Sink {
   std::vector<WrittenFile> files() const override;
 
  private:
-  void follow_traces(const Snapshot& now);
   void draw(const Snapshot& snapshot);
 
   const Scene& scene_;
   std::optional<double> time_;
   std::filesystem::path file_;
   std::string name_;
-  FrameDecor decor_;
-  int camera_ = -1;
+  View view_;
   Snapshot last_;
   bool begun_ = false, drawn_ = false;
 };

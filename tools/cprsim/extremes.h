@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is kept of a run's physics for its report: the energy balance and the deepest penetration.
+// What is kept of a run for its report: the energy balance and the deepest penetration.
 #pragma once
 
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
 
-class Ledger : public Sink {
+class Extremes : public Sink {
  public:
   void begin(const Snapshot& start) override;
   void step(const Snapshot& before, const Snapshot& now) override;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/cprsim/ledger.h"
+#include "tools/cprsim/extremes.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace cprsim {
 
-void Ledger::begin(const Snapshot& start) {
+void Extremes::begin(const Snapshot& start) {
   note(start);
 }
 
-void Ledger::step(const Snapshot&, const Snapshot& now) {
+void Extremes::step(const Snapshot&, const Snapshot& now) {
   note(now);
 }
 
-void Ledger::note(const Snapshot& now) {
+void Extremes::note(const Snapshot& now) {
   energy_ = now.energy;
   worst_balance_ = std::max(worst_balance_, std::abs(now.energy.balance));
   largest_work_ = std::max(largest_work_, std::abs(now.energy.work));
@@ -22,7 +22,7 @@ void Ledger::note(const Snapshot& now) {
   deepest_penetration_ = std::max(deepest_penetration_, now.contact.penetration);
 }
 
-double Ledger::exchanged() const {
+double Extremes::exchanged() const {
   return std::max({largest_work_, largest_kinetic_, std::abs(energy_.dissipated)});
 }
 
