@@ -58,11 +58,11 @@ struct EglContext::Egl {
   PFNEGLGETPROCADDRESSPROC GetProcAddress = nullptr;
   PFNEGLGETDISPLAYPROC GetDisplay = nullptr;
   PFNEGLINITIALIZEPROC Initialize = nullptr;
-  PFNEGLTERMINATEPROC Terminate = nullptr;
   PFNEGLBINDAPIPROC BindAPI = nullptr;
   PFNEGLCREATECONTEXTPROC CreateContext = nullptr;
   PFNEGLDESTROYCONTEXTPROC DestroyContext = nullptr;
   PFNEGLMAKECURRENTPROC MakeCurrent = nullptr;
+  PFNEGLGETCURRENTCONTEXTPROC GetCurrentContext = nullptr;
   PFNEGLGETERRORPROC GetError = nullptr;
   PFNEGLQUERYSTRINGPROC QueryString = nullptr;
 
@@ -92,9 +92,9 @@ bool EglContext::Egl::load(std::string& why_not) {
   }
   const bool complete =
       symbol(GetProcAddress, "eglGetProcAddress") && symbol(GetDisplay, "eglGetDisplay") &&
-      symbol(Initialize, "eglInitialize") && symbol(Terminate, "eglTerminate") &&
-      symbol(BindAPI, "eglBindAPI") && symbol(CreateContext, "eglCreateContext") &&
-      symbol(DestroyContext, "eglDestroyContext") && symbol(MakeCurrent, "eglMakeCurrent") &&
+      symbol(Initialize, "eglInitialize") && symbol(BindAPI, "eglBindAPI") &&
+      symbol(CreateContext, "eglCreateContext") && symbol(DestroyContext, "eglDestroyContext") &&
+      symbol(MakeCurrent, "eglMakeCurrent") && symbol(GetCurrentContext, "eglGetCurrentContext") &&
       symbol(GetError, "eglGetError") && symbol(QueryString, "eglQueryString");
   if (!complete) why_not = std::string(kInstall) + " (libEGL.so.1 lacks functions of EGL 1.4)";
   return complete;
@@ -130,7 +130,6 @@ bool EglContext::Egl::start(EGLDisplay candidate, const std::string& way, std::s
       return true;
     }
   }
-  Terminate(candidate);
   return false;
 }
 
@@ -161,17 +160,24 @@ bool EglContext::Egl::start_any(std::string& tried) {
 
 void EglContext::Egl::stop() {
   if (display != EGL_NO_DISPLAY) {
-    MakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (GetCurrentContext() == context) {
+      MakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
     DestroyContext(display, context);
-    Terminate(display);
   }
-  // the library stays loaded: drivers leave threads and exit handlers behind
+  // the display is not terminated: every context of this process shares it. The library stays
+  // loaded: drivers leave threads and exit handlers behind
 }
 
 EglContext::EglContext() : egl_(std::make_unique<Egl>()) {}
 
 EglContext::~EglContext() {
   if (egl_->library) egl_->stop();
+}
+
+void EglContext::make_current() const {
+  if (egl_->GetCurrentContext() == egl_->context) return;
+  egl_->MakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl_->context);
 }
 
 std::unique_ptr<EglContext> EglContext::create(std::string& why_not) {

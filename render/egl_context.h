@@ -9,7 +9,7 @@
 
 namespace cprsim {
 
-/// Current in the thread that created it, for as long as it lives.
+/// Current in the thread that created it until another one is made there.
 class EglContext {
  public:
   /// Tries the surfaceless platform, then every EGL device, then the default display.
@@ -19,6 +19,9 @@ class EglContext {
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
+
+  /// In the thread that created it, before any GL function is called.
+  void make_current() const;
 
   const Gl& gl() const { return gl_; }
 

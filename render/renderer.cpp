@@ -54,6 +54,11 @@ struct Renderer::Parts {
         visuals(make_parts(described)),
         still(still_bodies(described)) {}
 
+  // GL objects are freed in their own context
+  ~Parts() {
+    if (context) context->make_current();
+  }
+
   void settle(const Drawing& drawing);
   void grow_shadow_ball(const Ball& bounds);
   Image draw_anew(const Frame& frame);
@@ -179,6 +184,7 @@ std::unique_ptr<Renderer> Renderer::create(const Scene& scene, int width, int he
 
 Image Renderer::draw(const Snapshot& now, const CameraSpec& camera, const FrameDecor& decor) {
   Parts& parts = *parts_;
+  parts.context->make_current();
   const Vec2 range = decor.color_range
                          ? *decor.color_range
                          : range_of(decor.color_by, largest_value(decor.color_by, now));
