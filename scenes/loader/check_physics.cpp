@@ -74,10 +74,11 @@ void check_effect_data(Reading& r, const Node& world) {
       r.report.missing("E503", node, "damping is listed, rod '" + rod.name + "' has no <damping>");
     if (!damping && rod.damping)
       r.report.note("W511", node, "rod '" + rod.name + "' has <damping>, damping is not listed");
-    const bool massless = !rod.material && !given_anywhere(node, "material");
+    // a material that could not be read has its own error
+    const bool massless = !rod.material && !r.report.failed();
     const bool heavy =
         scene.effects.has(Effect::kGravity) && rod.gravity && !switched_off(rod, Effect::kGravity);
-    if (massless && (heavy || scene.simulation.mode == Mode::kDynamic) && !node.attribute("class"))
+    if (massless && (heavy || scene.simulation.mode == Mode::kDynamic))
       r.report.missing("E503", node, "rod '" + rod.name + "' has no density: give a <material>");
   }
   const auto& asked = scene.effects.asked_at;

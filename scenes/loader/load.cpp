@@ -107,7 +107,8 @@ void load(const std::string& text, const std::string& name, const LoadOptions& o
 
   auto scene = std::make_unique<Scene>();
   FrameGraph frames(*world, report);
-  Reading reading{*scene, frames, report, options, includes.folders, includes.roots, {}, {}, {}};
+  Reading reading{*scene,         frames, report, options, includes.folders,
+                  includes.roots, {},     {},     {},      {}};
   read_world(reading, *world);
   for (const SourceFile& file : report.files())
     scene->files.push_back(file.path);

@@ -40,14 +40,20 @@ int read_mesh(Reading& r, const Node& node) {
   const Node* part = node.child("submesh");
   const Node* name = part ? part->child("name") : nullptr;
   const bool center = part && flag_of(part->child("center"), false);
+  std::string key = found.path + (center ? "|centred" : "|") + (name ? name->text : "");
+  for (const double factor : {scale[0], scale[1], scale[2]})
+    key += "|" + format_number(factor);
+  if (const auto known = r.mesh_index.find(key); known != r.mesh_index.end()) return known->second;
   std::string error;
   MeshSpec mesh = load_mesh(found.path, found.root, scale, name ? name->text : "", center, error);
   if (!error.empty()) {
     r.report.bad_text("E109", *uri, "mesh '" + uri->text + "': " + error);
     return -1;
   }
+  const int index = static_cast<int>(r.scene.meshes.size());
   r.scene.meshes.push_back(std::move(mesh));
-  return static_cast<int>(r.scene.meshes.size()) - 1;
+  r.mesh_index.emplace(std::move(key), index);
+  return index;
 }
 
 Vec3 unit(Reading& r, const Node& node, const Vec3& v) {

@@ -24,7 +24,8 @@ struct Reading {
   std::vector<std::string> folders;  ///< of each file, for what it names
   std::vector<std::string> roots;    ///< below which files may be opened
   std::map<std::string, Profile, std::less<>> profiles;
-  std::map<int, int> joint_of_vertex;  ///< frame vertex -> Scene::joints
+  std::map<std::string, int> mesh_index;  ///< file, scale and part -> Scene::meshes
+  std::map<int, int> joint_of_vertex;     ///< frame vertex -> Scene::joints
   std::string expected_failure;
 };
 
