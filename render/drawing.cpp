@@ -156,6 +156,7 @@ std::vector<Part> make_parts(const Scene& scene) {
       part.look = look_of(visual, still[i]);
       part.mesh = make_shape(visual.shape, part.look, scene.meshes);
       part.moves = !still[i];
+      part.closed = visual.shape.kind != ShapeKind::kMesh && visual.shape.kind != ShapeKind::kPlane;
       part.casts_shadow = visual.cast_shadows;
       // 5 m: wider than any of these robots, so that its edge is not part of the picture
       part.is_ground = still[i] && is_level_plane(visual.shape, (body.X_WB * visual.X_BV).R) &&

@@ -22,6 +22,7 @@ struct Part {
   Look look;
   bool moves = false;
   bool casts_shadow = true;
+  bool closed = false;     ///< only the outside can be seen
   bool is_ground = false;  ///< a wide level plane: drawn as the ground itself
 };
 

@@ -21,8 +21,8 @@ constexpr double kShadowOffsetTexels =
 constexpr GLuint kObjects = 0, kShadowMap = 1, kShadowCover = 2, kFirst = 3, kSecond = 4,
                  kThird = 5;
 
-std::string fragment(const char* source, const char* define = "") {
-  return std::string(shaders::kVersion) + define + shaders::kLighting + source;
+std::string fragment(const char* source, const std::string& defines = "") {
+  return std::string(shaders::kVersion) + defines + shaders::kLighting + source;
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ struct GlPainter::Textures {
       gl.SamplerParameteri(compare, filter, GL_LINEAR);
       gl.SamplerParameteri(levels, filter, GL_LINEAR);
     }
-    gl.SamplerParameteri(levels, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    gl.SamplerParameteri(levels, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
     gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   }
@@ -88,16 +88,10 @@ GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
       ribbons_(gl),
       tiles_(gl) {
   const std::string version = shaders::kVersion;
-  const std::string whole = version + shaders::kSceneVertex;
   objects_ = std::make_unique<Program>(gl, version + shaders::kObjectVertex,
                                        fragment(shaders::kObjectFragment));
   shadows_ = std::make_unique<Program>(gl, version + shaders::kShadowVertex,
                                        version + shaders::kShadowFragment);
-  direct_ = std::make_unique<Program>(gl, whole, fragment(shaders::kSceneFragment));
-  ranged_ =
-      std::make_unique<Program>(gl, whole, fragment(shaders::kSceneFragment, "#define RANGE\n"));
-  cached_ =
-      std::make_unique<Program>(gl, whole, fragment(shaders::kSceneFragment, "#define CACHED\n"));
   for (const Part& part : parts) {
     geometries_.emplace_back(gl);
     geometries_.back().upload(part.mesh);
@@ -117,51 +111,48 @@ Mat4 GlPainter::light_clip(const Frame& frame) const {
 void GlPainter::paint(const Frame& frame) {
   const Shine shine{true, frame.light.shadows, Which::kAll};
   upload_sweeps(frame);
-  upload_tiles({{whole(), true, true}});
   if (frame.light.shadows) draw_shadows(frame, Which::kAll);
   draw_objects(frame, Which::kAll, whole(), shine);
-  compose(*direct_, frame, textures_->to_picture, shine);
+  compose(Ground::kDirect, frame, textures_->to_picture, shine, {{whole(), true, shine.shadows}});
 }
 
 void GlPainter::store_still(const Frame& frame) {
   const Shine shine{true, frame.light.shadows, Which::kStill}, shade{false, false, Which::kStill};
-  upload_tiles({{whole(), true, true}});
   if (frame.light.shadows) draw_shadows(frame, Which::kStill);
   draw_objects(frame, Which::kStill, whole(), shine);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, textures_->to_objects);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, textures_->to_kept_depth);
   gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT,
                       GL_NEAREST);
-  compose(*ranged_, frame, textures_->to_in_light, shine);
+  compose(Ground::kRanged, frame, textures_->to_in_light, shine, {{whole(), true, shine.shadows}});
   draw_objects(frame, Which::kStill, whole(), shade);
-  compose(*direct_, frame, textures_->to_in_shade, shade);
+  compose(Ground::kDirect, frame, textures_->to_in_shade, shade, {{whole(), true, false}});
 }
 
 void GlPainter::paint_moving(const Frame& frame, const Changes& changes) {
   if (changes.runs.empty()) return;
   const Shine shine{true, frame.light.shadows, Which::kMoving};
   upload_sweeps(frame);
-  upload_tiles(changes.runs);
   if (frame.light.shadows) draw_shadows(frame, Which::kMoving);
   if (!changes.objects.empty()) draw_objects(frame, Which::kMoving, changes.objects, shine);
-  compose(*cached_, frame, textures_->to_picture, shine);
+  compose(Ground::kCached, frame, textures_->to_picture, shine, changes.runs);
 }
 
-void GlPainter::upload_tiles(const std::vector<TileRun>& runs) {
+bool GlPainter::upload_tiles(const std::vector<TileRun>& runs, bool objects, bool shadow) {
   TriMesh mesh;
   for (const TileRun& run : runs) {
+    if (run.objects != objects || run.shadow != shadow) continue;
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     const Region& r = run.region;
     for (const auto& [x, y] : {std::pair{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}) {
       const Vec3 clip(2.0 * x / width_ - 1, 2.0 * y / height_ - 1, 0);
-      mesh.vertices.push_back(
-          {clip.cast<float>(), Eigen::Vector3f::Zero(),
-           to_bytes({run.objects ? 1.0F : 0.0F, run.shadow ? 1.0F : 0.0F, 0}, 1)});
+      mesh.vertices.push_back({clip.cast<float>(), Eigen::Vector3f::Zero(), {}});
     }
     mesh.indices.insert(mesh.indices.end(),
                         {first, first + 1, first + 2, first, first + 2, first + 3});
   }
   tiles_.upload(mesh);
+  return !mesh.indices.empty();
 }
 
 void GlPainter::upload_sweeps(const Frame& frame) {
@@ -229,7 +220,10 @@ void GlPainter::draw_part(const Frame& frame, std::size_t i) const {
   objects_->set("specular", look.specular);
   objects_->set("emissive", look.emissive);
   objects_->set("shininess", std::clamp(look.shininess, 1.0, 200.0));
+  // the far side of a closed shape is never seen, unless through its near side
+  if (parts_[i].closed && look.opacity >= 1) gl_.Enable(GL_CULL_FACE);
   geometries_[i].draw();
+  gl_.Disable(GL_CULL_FACE);
 }
 
 void GlPainter::draw_objects(const Frame& frame, Which which, const Region& region,
@@ -295,29 +289,46 @@ void GlPainter::draw_sweeps_and_glass(const Frame& frame, Which which) {
   gl_.Disable(GL_BLEND);
 }
 
-void GlPainter::compose(const Program& program, const Frame& frame, GLuint target,
-                        const Shine& shine) {
+const Program& GlPainter::program_for(Ground ground, bool objects, bool shadow) {
+  std::unique_ptr<Program>& program = grounds_[{ground, objects, shadow}];
+  if (program) return *program;
+  std::string defines;
+  if (ground == Ground::kRanged) defines += "#define RANGE\n";
+  if (ground == Ground::kCached) defines += "#define CACHED\n";
+  if (objects) defines += "#define OBJECTS\n";
+  if (shadow) defines += "#define SHADOW\n";
+  program = std::make_unique<Program>(gl_, std::string(shaders::kVersion) + shaders::kSceneVertex,
+                                      fragment(shaders::kSceneFragment, defines));
+  return *program;
+}
+
+void GlPainter::compose(Ground ground, const Frame& frame, GLuint target, const Shine& shine,
+                        const std::vector<TileRun>& runs) {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
   limit(whole());
   gl_.Disable(GL_DEPTH_TEST);
-  program.use();
-  set_lighting(program, frame, shine);
-  set_backdrop(program, frame);
-  program.set("objects", static_cast<int>(kObjects));
   bind(kObjects, GL_TEXTURE_2D_MULTISAMPLE, textures_->object_color);
-  if (&program == ranged_.get()) {
-    program.set("object_depth", static_cast<int>(kFirst));
-    bind(kFirst, GL_TEXTURE_2D_MULTISAMPLE, textures_->object_depth);
-  }
-  if (&program == cached_.get()) {
-    program.set("in_light", static_cast<int>(kFirst));
-    program.set("in_shade", static_cast<int>(kSecond));
-    program.set("range", static_cast<int>(kThird));
+  if (ground == Ground::kRanged) bind(kFirst, GL_TEXTURE_2D_MULTISAMPLE, textures_->object_depth);
+  if (ground == Ground::kCached) {
     bind(kFirst, GL_TEXTURE_2D, textures_->in_light);
     bind(kSecond, GL_TEXTURE_2D, textures_->in_shade);
     bind(kThird, GL_TEXTURE_2D, textures_->range);
   }
-  tiles_.draw();
+  for (bool objects : {false, true}) {
+    for (bool shadow : {false, true}) {
+      if (!upload_tiles(runs, objects, shadow)) continue;
+      const Program& program = program_for(ground, objects, shadow);
+      program.use();
+      set_lighting(program, frame, shine);
+      set_backdrop(program, frame);
+      program.set("objects", static_cast<int>(kObjects));
+      program.set("object_depth", static_cast<int>(kFirst));
+      program.set("in_light", static_cast<int>(kFirst));
+      program.set("in_shade", static_cast<int>(kSecond));
+      program.set("range", static_cast<int>(kThird));
+      tiles_.draw();
+    }
+  }
   gl_.Disable(GL_SCISSOR_TEST);
 }
 
@@ -365,7 +376,7 @@ void GlPainter::set_lighting(const Program& program, const Frame& frame, const S
   const double texel = 1.0 / shadow_size_;
   program.set("shadow_texel", texel);
   program.set("shadow_softness", kShadowSoftness);
-  program.set("shadow_search", std::log2(kShadowSoftness * shadow_size_));
+  program.set("shadow_search", std::round(std::log2(kShadowSoftness * shadow_size_)));
   program.set("shadow_normal_offset", kShadowOffsetTexels * texel * 2 * frame.shadow_ball.radius);
   program.set("shadowed", shine.shadows ? 1.0 : 0.0);
   program.set("shadow_map", static_cast<int>(kShadowMap));

@@ -6,7 +6,9 @@
 // only.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "render/gl_objects.h"
@@ -65,9 +67,14 @@ class GlPainter {
   void draw_objects(const Frame& frame, Which which, const Region& region, const Shine& shine);
   void draw_sweeps_and_glass(const Frame& frame, Which which);
   void draw_part(const Frame& frame, std::size_t i) const;
-  void compose(const Program& program, const Frame& frame, GLuint target, const Shine& shine);
+  /// Over which background the objects are put.
+  enum class Ground { kDirect, kRanged, kCached };
+
+  void compose(Ground ground, const Frame& frame, GLuint target, const Shine& shine,
+               const std::vector<TileRun>& runs);
+  const Program& program_for(Ground ground, bool objects, bool shadow);
   void upload_sweeps(const Frame& frame);
-  void upload_tiles(const std::vector<TileRun>& runs);
+  bool upload_tiles(const std::vector<TileRun>& runs, bool objects, bool shadow);
   void set_backdrop(const Program& program, const Frame& frame) const;
   void set_lighting(const Program& program, const Frame& frame, const Shine& shine) const;
   void bind(GLuint unit, GLenum kind, GLuint texture, GLuint sampler = 0) const;
@@ -79,7 +86,8 @@ class GlPainter {
   const Gl& gl_;
   int width_, height_, shadow_size_;
   const std::vector<Part>& parts_;
-  std::unique_ptr<Program> objects_, shadows_, direct_, ranged_, cached_;
+  std::unique_ptr<Program> objects_, shadows_;
+  std::map<std::tuple<Ground, bool, bool>, std::unique_ptr<Program>> grounds_;
   std::unique_ptr<Textures> textures_;
   std::vector<Geometry> geometries_;
   Geometry tubes_, tube_shadows_, ribbons_, tiles_;

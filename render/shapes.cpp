@@ -63,8 +63,8 @@ Profile2 cylinder_profile(double radius, double length) {
   const double bevel = 0.3 * std::min(0.25 * radius, 0.5 * length);
   const double h = 0.5 * length;
   Profile2 profile{{0, -h, 0, -1}};
-  add_arc(profile, radius - bevel, -h + bevel, bevel, -0.5 * kPi, 0, 3);
-  add_arc(profile, radius - bevel, h - bevel, bevel, 0, 0.5 * kPi, 3);
+  add_arc(profile, radius - bevel, -h + bevel, bevel, -0.5 * kPi, 0, 2);
+  add_arc(profile, radius - bevel, h - bevel, bevel, 0, 0.5 * kPi, 2);
   profile.push_back({0, h, 0, 1});
   return profile;
 }

@@ -33,18 +33,16 @@ bool lit_region(vec3 q) {
 // 1 in full light, 0 in full shadow; for points on surfaces that cast no shadow on themselves
 float seen_softly(sampler2D cover, vec3 q) {
   vec2 near = textureLod(cover, q.xy, shadow_search).rg;
-  if (near.r < 0.002) return 1.0;
-  float above = q.z - near.g / near.r;
-  if (above < 0.0) return 1.0;
+  float above = q.z - near.g / max(near.r, 1e-6);
   // in texels; 1.2 hides the texels of the finest level
-  float width = min(1.4 * above, 1.0) * shadow_softness / shadow_texel + 1.2;
+  float width = clamp(1.4 * above, 0.0, 1.0) * shadow_softness / shadow_texel + 1.2;
   float level = log2(width) - 0.5;
-  vec2 step = 0.5 * exp2(level) * shadow_texel * vec2(1.0, -1.0);
+  vec2 step = 0.36 * width * shadow_texel * vec2(1.0, -1.0);
   float covered = textureLod(cover, q.xy + step.xx, level).r +
                   textureLod(cover, q.xy + step.xy, level).r +
                   textureLod(cover, q.xy + step.yx, level).r +
                   textureLod(cover, q.xy + step.yy, level).r;
-  return 1.0 - 0.25 * covered;
+  return near.r > 0.002 && above > 0.0 ? 1.0 - 0.25 * covered : 1.0;
 }
 
 // likewise, for the objects themselves

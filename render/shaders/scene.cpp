@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Three kinds of one program: DIRECT paints ground and sky under the objects; with RANGE it also
+// Kinds of one program: DIRECT paints ground and sky under the objects; with RANGE it also
 // writes how far away everything is; CACHED takes the unmoving part of the picture from two stored
 // ones, in and out of the light, and decides between them by the shadow of what moves.
 #include "render/shaders/shaders.h"
@@ -8,29 +8,28 @@ namespace cprsim::shaders {
 
 const char* const kSceneVertex = R"(
 layout(location = 0) in vec3 position;  // in clip coordinates
-layout(location = 2) in vec4 color;     // red: objects are to be seen here; green: shadows
 uniform vec3 ray_centre, ray_right, ray_up;  // of the picture's middle and half its edges
 out vec3 ray;
-flat out vec2 there;
 void main() {
   ray = ray_centre + position.x * ray_right + position.y * ray_up;
-  there = color.rg;
   gl_Position = vec4(position.xy, 0.0, 1.0);
 }
 )";
 
 const char* const kSceneFragment = R"(
 in vec3 ray;
-flat in vec2 there;
-uniform sampler2DMS objects;
 uniform vec3 eye;
 layout(location = 0) out vec4 pixel;
 
+#ifdef OBJECTS
+uniform sampler2DMS objects;
 vec4 object_at(ivec2 at) {
-  if (there.x < 0.5) return vec4(0.0);
   return 0.25 * (texelFetch(objects, at, 0) + texelFetch(objects, at, 1) +
                  texelFetch(objects, at, 2) + texelFetch(objects, at, 3));
 }
+#else
+vec4 object_at(ivec2 at) { return vec4(0.0); }
+#endif
 
 #ifdef CACHED
 uniform sampler2D in_light, in_shade, range;
@@ -39,16 +38,12 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 object = object_at(at);
   vec3 color = texelFetch(in_light, at, 0).rgb;
-  if (there.y > 0.5) {
-    float distance = texelFetch(range, at, 0).r;
-    if (distance > 0.0) {
-      vec3 q = light_coordinates(eye + distance * ray);
-      if (lit_region(q)) {
-        float seen = seen_softly(shadow_cover, q);
-        if (seen < 1.0) color = mix(texelFetch(in_shade, at, 0).rgb, color, seen);
-      }
-    }
-  }
+#ifdef SHADOW
+  float distance = texelFetch(range, at, 0).r;
+  vec3 q = light_coordinates(eye + distance * ray);
+  float seen = distance > 0.0 && lit_region(q) ? seen_softly(shadow_cover, q) : 1.0;
+  color = mix(texelFetch(in_shade, at, 0).rgb, color, seen);
+#endif
   pixel = vec4(object.rgb + (1.0 - object.a) * color, 1.0);
 }
 #else
@@ -79,10 +74,10 @@ vec3 ground(vec3 p, vec3 backdrop) {
   float fade = smoothstep(fade_from, fade_to, away);
   vec3 n = vec3(0.0, 0.0, 1.0);
   float seen = 1.0;
+#ifdef SHADOW
   vec3 q = light_coordinates(p);
-  if (shadowed > 0.5 && lit_region(q)) {
-    seen = seen_softly(shadow_cover, q);
-  }
+  if (lit_region(q)) seen = seen_softly(shadow_cover, q);
+#endif
   float line = max(0.45 * lines(p.xy, cell, line_width), lines(p.xy, 5.0 * cell, 1.3 * line_width)) * grid;
   vec3 albedo = decoded(ground_color) * (1.0 - 0.16 * line);
   vec3 light = ambient_light(n) + key_color * (seen * max(to_key.z, 0.0)) + other_lights(p, n);
