@@ -350,6 +350,7 @@ void GlPainter::set_backdrop(const Program& program, const Frame& frame) const {
   program.set("fade_from", backdrop.fade_from);
   program.set("fade_to", backdrop.fade_to);
   program.set("line_width", view.fineness);
+  program.set("line_shade", backdrop.line_shade);
   program.set("depth_terms", Vec2(view.far * view.near / (view.far - view.near),
                                   view.far / (view.far - view.near)));
 }

@@ -219,7 +219,7 @@ CameraSpec camera_or_default(const Scene& scene, int camera, const Snapshot& now
   whole.look_at = bounds.centre;
   // the ball and some room fit into the picture's smaller, vertical angle
   const double distance =
-      1.12 * bounds.radius / std::sin(std::atan(std::tan(0.3) * whole.height / whole.width));
+      0.92 * bounds.radius / std::sin(std::atan(std::tan(0.3) * whole.height / whole.width));
   whole.eye = bounds.centre + distance * Vec3(0.62, -0.70, 0.36).normalized();
   return whole;
 }

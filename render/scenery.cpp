@@ -99,13 +99,16 @@ Backdrop make_backdrop(const Scene& scene, const Ball& bounds, double ground_z) 
   backdrop.fade_to = 9 * bounds.radius;
   backdrop.middle = bounds.centre;
   backdrop.ground_color = {0.80, 0.81, 0.825};
+  backdrop.line_shade = -0.16;
   backdrop.horizon_color = {0.93, 0.945, 0.96};
   backdrop.zenith_color = {0.52, 0.64, 0.80};
   if (scene.environment.background_set) {
     const Vec3 color = scene.environment.background.cwiseMax(0).cwiseMin(1);
     backdrop.zenith_color = color;
+    if (color.maxCoeff() < 0.4) backdrop.line_shade = 0.6;
     backdrop.horizon_color = 0.65 * color + 0.35 * Vec3::Ones() * color.maxCoeff();
-    backdrop.ground_color = 0.5 * backdrop.horizon_color + 0.36 * Vec3::Ones() * color.maxCoeff();
+    // near black, shadows would not show
+    backdrop.ground_color = 0.8 * backdrop.horizon_color + Vec3::Constant(0.08);
   }
   return backdrop;
 }

@@ -32,6 +32,7 @@ struct Backdrop {
   double ground_z = 0;
   bool grid = true;
   double cell = 0.1;                  ///< m between grid lines
+  double line_shade = 0;              ///< by which share they are brighter than the ground
   double fade_from = 1, fade_to = 5;  ///< m from `middle`, where the ground melts into the horizon
   Vec3 middle = Vec3::Zero();
   Vec3 ground_color, horizon_color, zenith_color;  ///< display RGB

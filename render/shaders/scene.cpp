@@ -48,7 +48,7 @@ void main() {
 }
 #else
 uniform vec3 ground_color, horizon_color, zenith_color, middle;
-uniform float ground_z, ground_there, grid, cell, fade_from, fade_to, line_width;
+uniform float ground_z, ground_there, grid, cell, fade_from, fade_to, line_width, line_shade;
 #ifdef RANGE
 uniform sampler2DMS object_depth;
 uniform vec2 depth_terms;  // distance = x / (y - depth)
@@ -79,7 +79,7 @@ vec3 ground(vec3 p, vec3 backdrop) {
   if (lit_region(q)) seen = seen_softly(shadow_cover, q);
 #endif
   float line = max(0.45 * lines(p.xy, cell, line_width), lines(p.xy, 5.0 * cell, 1.3 * line_width)) * grid;
-  vec3 albedo = decoded(ground_color) * (1.0 - 0.16 * line);
+  vec3 albedo = decoded(ground_color) * (1.0 + line_shade * line);
   vec3 light = ambient_light(n) + key_color * (seen * max(to_key.z, 0.0)) + other_lights(p, n);
   return mix(encoded(albedo * light), backdrop, fade);
 }
