@@ -17,6 +17,8 @@ constexpr double kShadowSoftness =
 constexpr double kShadowOffsetTexels =
     1.6;  // below 1.2 round rods show stripes of their own shadow
 
+const char* const kOtherLights = "#define OTHER_LIGHTS\n";
+
 // texture units
 constexpr GLuint kObjects = 0, kShadowMap = 1, kShadowCover = 2, kFirst = 3, kSecond = 4,
                  kThird = 5;
@@ -75,12 +77,13 @@ struct GlPainter::Textures {
   GlName compare, levels;
 };
 
-GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
+GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size, bool other_lights,
                      const std::vector<Part>& parts)
     : gl_(gl),
       width_(width),
       height_(height),
       shadow_size_(shadow_size),
+      other_lights_(other_lights),
       parts_(parts),
       textures_(std::make_unique<Textures>(gl, width, height, shadow_size)),
       tubes_(gl),
@@ -88,8 +91,9 @@ GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size,
       ribbons_(gl),
       tiles_(gl) {
   const std::string version = shaders::kVersion;
-  objects_ = std::make_unique<Program>(gl, version + shaders::kObjectVertex,
-                                       fragment(shaders::kObjectFragment));
+  objects_ = std::make_unique<Program>(
+      gl, version + shaders::kObjectVertex,
+      fragment(shaders::kObjectFragment, other_lights ? kOtherLights : ""));
   shadows_ = std::make_unique<Program>(gl, version + shaders::kShadowVertex,
                                        version + shaders::kShadowFragment);
   for (const Part& part : parts) {
@@ -108,12 +112,12 @@ Mat4 GlPainter::light_clip(const Frame& frame) const {
   return light_projection(-frame.light.to_key, frame.shadow_ball.centre, frame.shadow_ball.radius);
 }
 
-void GlPainter::paint(const Frame& frame) {
+void GlPainter::paint(const Frame& frame, const Changes& changes) {
   const Shine shine{true, frame.light.shadows, Which::kAll};
   upload_sweeps(frame);
   if (frame.light.shadows) draw_shadows(frame, Which::kAll);
-  draw_objects(frame, Which::kAll, whole(), shine);
-  compose(Ground::kDirect, frame, textures_->to_picture, shine, {{whole(), true, shine.shadows}});
+  if (!changes.objects.empty()) draw_objects(frame, Which::kAll, changes.objects, shine);
+  compose(Ground::kDirect, frame, textures_->to_picture, shine, changes.runs);
 }
 
 void GlPainter::store_still(const Frame& frame) {
@@ -124,9 +128,11 @@ void GlPainter::store_still(const Frame& frame) {
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, textures_->to_kept_depth);
   gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT,
                       GL_NEAREST);
-  compose(Ground::kRanged, frame, textures_->to_in_light, shine, {{whole(), true, shine.shadows}});
+  compose(Ground::kRanged, frame, textures_->to_in_light, shine,
+          {{whole(), true, shine.shadows, true, true}});
   draw_objects(frame, Which::kStill, whole(), shade);
-  compose(Ground::kDirect, frame, textures_->to_in_shade, shade, {{whole(), true, false}});
+  compose(Ground::kDirect, frame, textures_->to_in_shade, shade,
+          {{whole(), true, false, true, true}});
 }
 
 void GlPainter::paint_moving(const Frame& frame, const Changes& changes) {
@@ -138,10 +144,10 @@ void GlPainter::paint_moving(const Frame& frame, const Changes& changes) {
   compose(Ground::kCached, frame, textures_->to_picture, shine, changes.runs);
 }
 
-bool GlPainter::upload_tiles(const std::vector<TileRun>& runs, bool objects, bool shadow) {
+bool GlPainter::upload_tiles(const std::vector<TileRun>& runs, const TileRun& kind) {
   TriMesh mesh;
   for (const TileRun& run : runs) {
-    if (run.objects != objects || run.shadow != shadow) continue;
+    if (!alike(run, kind)) continue;
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     const Region& r = run.region;
     for (const auto& [x, y] : {std::pair{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}) {
@@ -242,7 +248,7 @@ void GlPainter::draw_objects(const Frame& frame, Which which, const Region& regi
   gl_.ClearColor(0, 0, 0, 0);
   gl_.Clear(which == Which::kMoving ? GL_COLOR_BUFFER_BIT
                                     : GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  const bool cut = frame.backdrop.ground && frame.view.eye.z() > frame.backdrop.ground_z;
+  const bool cut = frame.view.eye.z() > frame.backdrop.ground_z;
   if (cut) gl_.Enable(GL_CLIP_DISTANCE0);
   objects_->use();
   set_lighting(*objects_, frame, shine);
@@ -289,14 +295,18 @@ void GlPainter::draw_sweeps_and_glass(const Frame& frame, Which which) {
   gl_.Disable(GL_BLEND);
 }
 
-const Program& GlPainter::program_for(Ground ground, bool objects, bool shadow) {
-  std::unique_ptr<Program>& program = grounds_[{ground, objects, shadow}];
+const Program& GlPainter::program_for(Ground ground, const TileRun& kind) {
+  std::unique_ptr<Program>& program =
+      grounds_[{ground, kind.objects, kind.shadow, kind.ground, kind.sky}];
   if (program) return *program;
   std::string defines;
   if (ground == Ground::kRanged) defines += "#define RANGE\n";
   if (ground == Ground::kCached) defines += "#define CACHED\n";
-  if (objects) defines += "#define OBJECTS\n";
-  if (shadow) defines += "#define SHADOW\n";
+  if (kind.objects) defines += "#define OBJECTS\n";
+  if (kind.shadow) defines += "#define SHADOW\n";
+  if (kind.ground) defines += "#define GROUND\n";
+  if (kind.sky) defines += "#define SKY\n";
+  if (other_lights_) defines += kOtherLights;
   program = std::make_unique<Program>(gl_, std::string(shaders::kVersion) + shaders::kSceneVertex,
                                       fragment(shaders::kSceneFragment, defines));
   return *program;
@@ -314,20 +324,19 @@ void GlPainter::compose(Ground ground, const Frame& frame, GLuint target, const 
     bind(kSecond, GL_TEXTURE_2D, textures_->in_shade);
     bind(kThird, GL_TEXTURE_2D, textures_->range);
   }
-  for (bool objects : {false, true}) {
-    for (bool shadow : {false, true}) {
-      if (!upload_tiles(runs, objects, shadow)) continue;
-      const Program& program = program_for(ground, objects, shadow);
-      program.use();
-      set_lighting(program, frame, shine);
-      set_backdrop(program, frame);
-      program.set("objects", static_cast<int>(kObjects));
-      program.set("object_depth", static_cast<int>(kFirst));
-      program.set("in_light", static_cast<int>(kFirst));
-      program.set("in_shade", static_cast<int>(kSecond));
-      program.set("range", static_cast<int>(kThird));
-      tiles_.draw();
-    }
+  for (int bits = 0; bits < 16; ++bits) {
+    const TileRun kind{{}, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+    if (!upload_tiles(runs, kind)) continue;
+    const Program& program = program_for(ground, kind);
+    program.use();
+    set_lighting(program, frame, shine);
+    set_backdrop(program, frame);
+    program.set("objects", static_cast<int>(kObjects));
+    program.set("object_depth", static_cast<int>(kFirst));
+    program.set("in_light", static_cast<int>(kFirst));
+    program.set("in_shade", static_cast<int>(kSecond));
+    program.set("range", static_cast<int>(kThird));
+    tiles_.draw();
   }
   gl_.Disable(GL_SCISSOR_TEST);
 }
@@ -344,7 +353,6 @@ void GlPainter::set_backdrop(const Program& program, const Frame& frame) const {
   program.set("zenith_color", backdrop.zenith_color);
   program.set("middle", backdrop.middle);
   program.set("ground_z", backdrop.ground_z);
-  program.set("ground_there", backdrop.ground ? 1.0 : 0.0);
   program.set("grid", backdrop.grid ? 1.0 : 0.0);
   program.set("cell", backdrop.cell);
   program.set("fade_from", backdrop.fade_from);

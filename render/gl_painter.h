@@ -29,11 +29,13 @@ struct Frame {
 class GlPainter {
  public:
   /// Throws std::runtime_error if the device cannot do it.
-  GlPainter(const Gl& gl, int width, int height, int shadow_size, const std::vector<Part>& parts);
+  /// @param other_lights  there are lights besides the key light
+  GlPainter(const Gl& gl, int width, int height, int shadow_size, bool other_lights,
+            const std::vector<Part>& parts);
   ~GlPainter();
 
-  /// The whole picture, from nothing.
-  void paint(const Frame& frame);
+  /// The whole picture, from nothing. @param changes  of a TileMap for pictures drawn anew
+  void paint(const Frame& frame, const Changes& changes);
 
   /// Draws what does not move, for paint_moving() with the same view, light and backdrop.
   void store_still(const Frame& frame);
@@ -72,9 +74,9 @@ class GlPainter {
 
   void compose(Ground ground, const Frame& frame, GLuint target, const Shine& shine,
                const std::vector<TileRun>& runs);
-  const Program& program_for(Ground ground, bool objects, bool shadow);
+  const Program& program_for(Ground ground, const TileRun& kind);
   void upload_sweeps(const Frame& frame);
-  bool upload_tiles(const std::vector<TileRun>& runs, bool objects, bool shadow);
+  bool upload_tiles(const std::vector<TileRun>& runs, const TileRun& kind);
   void set_backdrop(const Program& program, const Frame& frame) const;
   void set_lighting(const Program& program, const Frame& frame, const Shine& shine) const;
   void bind(GLuint unit, GLenum kind, GLuint texture, GLuint sampler = 0) const;
@@ -85,9 +87,10 @@ class GlPainter {
 
   const Gl& gl_;
   int width_, height_, shadow_size_;
+  bool other_lights_;
   const std::vector<Part>& parts_;
   std::unique_ptr<Program> objects_, shadows_;
-  std::map<std::tuple<Ground, bool, bool>, std::unique_ptr<Program>> grounds_;
+  std::map<std::tuple<Ground, bool, bool, bool, bool>, std::unique_ptr<Program>> grounds_;
   std::unique_ptr<Textures> textures_;
   std::vector<Geometry> geometries_;
   Geometry tubes_, tube_shadows_, ribbons_, tiles_;

@@ -120,7 +120,8 @@ bool Renderer::Parts::is_stored(const Frame& frame) const {
 }
 
 Image Renderer::Parts::draw_anew(const Frame& frame) {
-  painter->paint(frame);
+  const TileMap map(frame.view, frame.backdrop.ground_z, painter->light_clip(frame));
+  painter->paint(frame, map.changes(visuals, frame.drawing, GlPainter::softness()));
   const Region whole{0, 0, frame.view.width, frame.view.height};
   painter->read(whole, rows);
   Image image(whole.width(), whole.height());
@@ -172,9 +173,9 @@ std::unique_ptr<Renderer> Renderer::create(const Scene& scene, int width, int he
     parts->options.supersample = finer;
     parts->context = EglContext::create(why_not);
     if (!parts->context) return nullptr;
-    parts->painter =
-        std::make_unique<GlPainter>(parts->context->gl(), width * finer, height * finer,
-                                    std::clamp(options.shadow_size, 64, 8192), parts->visuals);
+    parts->painter = std::make_unique<GlPainter>(
+        parts->context->gl(), width * finer, height * finer,
+        std::clamp(options.shadow_size, 64, 8192), scene.lights.size() > 1, parts->visuals);
     return std::unique_ptr<Renderer>(new Renderer(std::move(parts)));
   } catch (const std::runtime_error& error) {
     why_not = error.what();

@@ -28,7 +28,6 @@ struct Lighting {
 };
 
 struct Backdrop {
-  bool ground = true;
   double ground_z = 0;
   bool grid = true;
   double cell = 0.1;                  ///< m between grid lines

@@ -68,10 +68,11 @@ Vec2 light_place(const Mat4& light_clip, const Vec3& p) {
 /// What moves, cut into pieces small enough to be boxed: their corners and how far they reach about
 /// them.
 template <class Visit>
-void visit_pieces(const std::vector<Part>& parts, const Drawing& drawing, Visit&& visit) {
+void visit_pieces(const std::vector<Part>& parts, const Drawing& drawing, bool all, Visit&& visit) {
   std::vector<Vec3> corners(8);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i].is_ground || (!parts[i].moves && parts[i].look.opacity >= 1)) continue;
+    const bool still = !parts[i].moves && parts[i].look.opacity >= 1;
+    if (parts[i].is_ground || (still && !all)) continue;
     for (std::size_t k = 0; k < 8; ++k)
       corners[k] = drawing.part_poses[i] * parts[i].corners[k];
     visit(corners, 0.0, parts[i].casts_shadow);
@@ -114,21 +115,56 @@ Region joined(const Region& a, const Region& b) {
 
 }  // namespace
 
-TileMap::TileMap(const View& view, const std::vector<float>& range, const Mat4& light_clip)
+bool alike(const TileRun& a, const TileRun& b) {
+  return a.objects == b.objects && a.shadow == b.shadow && a.ground == b.ground && a.sky == b.sky;
+}
+
+TileMap::TileMap(const View& view, const Mat4& light_clip, bool anew)
     : view_(view),
       light_clip_(light_clip),
+      anew_(anew),
       columns_((view.width + kTile - 1) / kTile),
       rows_((view.height + kTile - 1) / kTile),
-      tiles_(static_cast<std::size_t>(columns_ * rows_)) {
-  const Vec3 right = view.tan_half_x * view.R_WC.col(0), up = view.tan_half_y * view.R_WC.col(1);
+      tiles_(static_cast<std::size_t>(columns_ * rows_)) {}
+
+/// From the eye through a point of the picture, of depth 1.
+Vec3 TileMap::ray(double x, double y) const {
+  return view_.R_WC * Vec3((2 * x / view_.width - 1) * view_.tan_half_x,
+                           (2 * y / view_.height - 1) * view_.tan_half_y, -1);
+}
+
+TileMap::TileMap(const View& view, const std::vector<float>& range, const Mat4& light_clip)
+    : TileMap(view, light_clip, false) {
   for (int y = 0; y < view.height; ++y) {
     for (int x = 0; x < view.width; ++x) {
       const float depth = range[static_cast<std::size_t>(y * view.width + x)];
       if (!(depth > 0)) continue;
-      const Vec3 ray = -view.R_WC.col(2) + ((2 * x + 1.0) / view.width - 1) * right +
-                       ((2 * y + 1.0) / view.height - 1) * up;
-      const Vec2 at = light_place(light_clip, view.eye + static_cast<double>(depth) * ray);
-      tiles_[static_cast<std::size_t>(y / kTile * columns_ + x / kTile)].light.extend(at);
+      const Vec3 p = view.eye + static_cast<double>(depth) * ray(x + 0.5, y + 0.5);
+      tiles_[static_cast<std::size_t>(y / kTile * columns_ + x / kTile)].light.extend(
+          light_place(light_clip, p));
+    }
+  }
+}
+
+TileMap::TileMap(const View& view, double ground_z, const Mat4& light_clip)
+    : TileMap(view, light_clip, true) {
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      Tile& tile = tiles_[static_cast<std::size_t>(row * columns_ + column)];
+      int sky = 0;
+      for (int corner = 0; corner < 4; ++corner) {
+        const Vec3 r = ray((column + corner % 2) * kTile, (row + corner / 2) * kTile);
+        const double depth = (ground_z - view.eye.z()) / r.z();
+        const Vec3 p = view.eye + depth * r;
+        if (depth > 0 && p.allFinite()) {
+          tile.light.extend(light_place(light_clip, p));
+        } else {
+          ++sky;
+        }
+      }
+      // at the horizon a tile reaches to infinity
+      tile.sky = sky > 0;
+      if (sky > 0 && sky < 4) tile.light = Box2(Vec2(0, 0), Vec2(1, 1));
     }
   }
 }
@@ -136,42 +172,48 @@ TileMap::TileMap(const View& view, const std::vector<float>& range, const Mat4& 
 Changes TileMap::changes(const std::vector<Part>& parts, const Drawing& drawing,
                          double softness) const {
   Marks seen(columns_, rows_), shaded(kCells, kCells);
-  visit_pieces(parts, drawing, [&](const std::vector<Vec3>& corners, double reach, bool casts) {
-    const std::optional<Box2> box = seen_box(view_, corners, reach);
-    if (!box) {
-      seen.add_all();
-    } else {
-      seen.add(Box2(box->min() / kTile, box->max() / kTile));
-    }
-    if (!casts) return;
-    // the look-up of a shadow spreads over two texels of the level as wide as the softness
-    const Vec2 about = Vec2::Constant(2 * softness + reach * light_clip_.block<1, 3>(0, 0).norm());
-    Box2 shadow;
-    for (const Vec3& p : corners) {
-      const Vec2 at = light_place(light_clip_, p);
-      if (at.allFinite()) shadow.extend(Vec2(at - about)).extend(Vec2(at + about));
-    }
-    if (!shadow.isEmpty()) shaded.add(Box2(shadow.min() * kCells, shadow.max() * kCells));
-  });
+  visit_pieces(parts, drawing, anew_,
+               [&](const std::vector<Vec3>& corners, double reach, bool casts) {
+                 const std::optional<Box2> box = seen_box(view_, corners, reach);
+                 if (!box) {
+                   seen.add_all();
+                 } else {
+                   seen.add(Box2(box->min() / kTile, box->max() / kTile));
+                 }
+                 if (!casts) return;
+                 // the look-up of a shadow spreads over two texels of the level as wide as the
+                 // softness
+                 const Vec2 about =
+                     Vec2::Constant(2 * softness + reach * light_clip_.block<1, 3>(0, 0).norm());
+                 Box2 shadow;
+                 for (const Vec3& p : corners) {
+                   const Vec2 at = light_place(light_clip_, p);
+                   if (at.allFinite()) shadow.extend(Vec2(at - about)).extend(Vec2(at + about));
+                 }
+                 if (!shadow.isEmpty())
+                   shaded.add(Box2(shadow.min() * kCells, shadow.max() * kCells));
+               });
 
   Changes changes;
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      const Box2& light = tiles_[static_cast<std::size_t>(row * columns_ + column)].light;
+      const Tile& tile = tiles_[static_cast<std::size_t>(row * columns_ + column)];
+      const Box2& light = tile.light;
       const bool objects = seen.at(column, row);
       const bool shadow =
           !light.isEmpty() && shaded.any(Box2(light.min() * kCells, light.max() * kCells));
-      if (!objects && !shadow) continue;
+      if (!objects && !shadow && !anew_) continue;
       const Region region{column * kTile, row * kTile, std::min((column + 1) * kTile, view_.width),
                           std::min((row + 1) * kTile, view_.height)};
       changes.all = joined(changes.all, region);
       if (objects) changes.objects = joined(changes.objects, region);
+      const TileRun run{region, objects, shadow, !light.isEmpty(), tile.sky};
       TileRun* last = changes.runs.empty() ? nullptr : &changes.runs.back();
       if (last != nullptr && last->region.x1 == region.x0 && last->region.y0 == region.y0 &&
-          last->objects == objects && last->shadow == shadow) {
+          alike(*last, run)) {
         last->region.x1 = region.x1;
       } else {
-        changes.runs.push_back({region, objects, shadow});
+        changes.runs.push_back(run);
       }
     }
   }

@@ -60,6 +60,7 @@ vec3 encoded(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
 vec3 ambient_light(vec3 n) { return mix(ambient_down, ambient_up, 0.5 + 0.5 * n.z); }
 
 // what the lights without shadows add
+#ifdef OTHER_LIGHTS
 vec3 other_lights(vec3 p, vec3 n) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < light_count; ++i) {
@@ -72,6 +73,9 @@ vec3 other_lights(vec3 p, vec3 n) {
   }
   return sum;
 }
+#else
+vec3 other_lights(vec3 p, vec3 n) { return vec3(0.0); }
+#endif
 )";
 
 }  // namespace cprsim::shaders

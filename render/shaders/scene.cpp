@@ -48,7 +48,7 @@ void main() {
 }
 #else
 uniform vec3 ground_color, horizon_color, zenith_color, middle;
-uniform float ground_z, ground_there, grid, cell, fade_from, fade_to, line_width, line_shade;
+uniform float ground_z, grid, cell, fade_from, fade_to, line_width, line_shade;
 #ifdef RANGE
 uniform sampler2DMS object_depth;
 uniform vec2 depth_terms;  // distance = x / (y - depth)
@@ -60,40 +60,48 @@ vec3 sky(vec3 direction) {
   return mix(horizon_color, zenith_color, h * (2.0 - h));
 }
 
-// how much of a grid line of the given spacing covers the pixel
-float lines(vec2 p, float spacing, float width) {
-  vec2 c = p / spacing;
-  vec2 w = max(fwidth(c), vec2(1e-6));
+// how much of a grid line covers the pixel; c: where it is, w: how much of the grid it spans
+float line_at(vec2 c, vec2 w, float width) {
   vec2 d = abs(fract(c - 0.5) - 0.5) / w;
   vec2 l = clamp(0.5 * width + 0.5 - d, 0.0, 1.0) * clamp(1.5 - 4.0 * w, 0.0, 1.0);
   return max(l.x, l.y);
 }
 
-vec3 ground(vec3 p, vec3 backdrop) {
-  float away = length(p.xy - middle.xy);
-  float fade = smoothstep(fade_from, fade_to, away);
-  vec3 n = vec3(0.0, 0.0, 1.0);
+vec3 ground(vec3 p) {
+  vec2 c = p.xy * (1.0 / cell);
+  vec2 w = max(fwidth(c), vec2(1e-6));
+  float line = max(0.45 * line_at(c, w, line_width),
+                   line_at(0.2 * c, 0.2 * w, 1.3 * line_width)) * grid;
   float seen = 1.0;
 #ifdef SHADOW
   vec3 q = light_coordinates(p);
   if (lit_region(q)) seen = seen_softly(shadow_cover, q);
 #endif
-  float line = max(0.45 * lines(p.xy, cell, line_width), lines(p.xy, 5.0 * cell, 1.3 * line_width)) * grid;
   vec3 albedo = decoded(ground_color) * (1.0 + line_shade * line);
-  vec3 light = ambient_light(n) + key_color * (seen * max(to_key.z, 0.0)) + other_lights(p, n);
-  return mix(encoded(albedo * light), backdrop, fade);
+  vec3 light = ambient_up + key_color * (seen * max(to_key.z, 0.0)) +
+               other_lights(p, vec3(0.0, 0.0, 1.0));
+  vec3 color = encoded(albedo * light);
+  return mix(color, horizon_color, smoothstep(fade_from, fade_to, length(p.xy - middle.xy)));
 }
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 object = object_at(at);
-  vec3 direction = normalize(ray);
-  vec3 color = sky(direction);
+#ifdef GROUND
   float far = (ground_z - eye.z) / ray.z;
-  bool on_ground = ground_there > 0.5 && far > 0.0;
-  vec3 p = eye + (on_ground ? far : 1.0) * ray;
-  vec3 floor_color = ground(p, horizon_color);
-  if (on_ground) color = floor_color;
+#ifdef SKY
+  bool on_ground = far > 0.0;
+  vec3 floor_color = ground(eye + (on_ground ? far : 1.0) * ray);
+  vec3 color = on_ground ? floor_color : sky(normalize(ray));
+#else
+  const bool on_ground = true;
+  vec3 color = ground(eye + far * ray);
+#endif
+#else
+  const float far = 0.0;
+  const bool on_ground = false;
+  vec3 color = sky(normalize(ray));
+#endif
 #ifdef RANGE
   float depth = texelFetch(object_depth, at, 0).r;
   range = depth < 1.0 ? depth_terms.x / (depth_terms.y - depth) : (on_ground ? far : -1.0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The GLSL programs. Colours are decoded from display values by squaring, lit linearly, and encoded
-// again by a square root: close to sRGB and far cheaper than a power. Software renderers compute both sides
-// of every "if": what is to be saved is left out by a #define instead.
+// again by a square root: close to sRGB and far cheaper than a power. Software renderers compute
+// both sides of every "if": what is to be saved is left out by a #define instead.
 #pragma once
 
 namespace cprsim::shaders {

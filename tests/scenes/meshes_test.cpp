@@ -122,7 +122,8 @@ TEST_F(Meshes, TakesColoursFromTheMaterial) {
 
 TEST_F(Meshes, OpensNothingOutsideTheAssetRoot) {
   std::ofstream(folder_ / "secret.mtl") << "newmtl red\nKd 1 0 0\n";
-  for (const std::string& name : {std::string("../secret.mtl"), (folder_ / "secret.mtl").string()}) {
+  for (const std::string& name :
+       {std::string("../secret.mtl"), (folder_ / "secret.mtl").string()}) {
     const MeshSpec mesh = load(write("t.obj", "mtllib " + name + "\nusemtl red\n" + kTetrahedron));
     for (const Eigen::Vector3f& color : mesh.colors) {
       EXPECT_GT(color.y(), 0.1F) << "the red of " << name << " was read";
