@@ -63,8 +63,13 @@ void EnergyLedger::sum_up() {
     e.gravity += own.gravity;
   }
   if (free_bodies_) {
-    e.kinetic += free_bodies_->kinetic_energy();
-    e.gravity += free_bodies_->gravity_energy();
+    const double kinetic = free_bodies_->kinetic_energy(), gravity = free_bodies_->gravity_energy();
+    e.kinetic += kinetic;
+    e.gravity += gravity;
+    // only contact and drag change the energy of bodies in flight: what is gone counts as dissipated
+    if (free_energy_known_) e.dissipated += free_energy_ - (kinetic + gravity);
+    free_energy_ = kinetic + gravity;
+    free_energy_known_ = true;
   }
   e.total = e.kinetic + e.elastic + e.gravity;
   e.balance = e.total - start_ - e.work + e.dissipated;

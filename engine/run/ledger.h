@@ -50,6 +50,8 @@ class EnergyLedger {
   std::vector<Scalar> scalars_, scalars_before_;
   EnergySample sample_;
   double start_ = 0;
+  double free_energy_ = 0;
+  bool free_energy_known_ = false;
 };
 
 }  // namespace cprsim

@@ -59,7 +59,8 @@ StepPlan plan_steps(const Scene& scene) {
     double length = 0;
     for (const RodSpec& rod : scene.rods)
       length = std::max(length, rod.length);
-    plan.tolerance = *spec.accuracy / (length > 0 ? length : 1);
+    // local errors add up: a tenth of what is asked for
+    plan.tolerance = 0.1 * *spec.accuracy / (length > 0 ? length : 1);
   }
   return plan;
 }
