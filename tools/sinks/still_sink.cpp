@@ -5,6 +5,13 @@
 
 namespace cprsim {
 
+namespace {
+
+/// s between the points of a trace, so that it is smooth however long the steps are.
+constexpr double kTracePeriod = 0.01;
+
+}  // namespace
+
 StillSink::StillSink(const Scene& scene, std::optional<double> time, std::filesystem::path file,
                      std::string name)
     : scene_(scene),
@@ -24,6 +31,9 @@ void StillSink::step(const Snapshot& before, const Snapshot& now) {
   if (drawn_) return;
   const bool passed = time_ && *time_ <= now.time;
   last_ = passed ? interpolate(before, now, *time_) : now;
+  for (double t = before.time + kTracePeriod; t < last_.time; t += kTracePeriod) {
+    view_.follow(interpolate(before, now, t));
+  }
   view_.follow(last_);
   if (passed) draw(last_);
 }
