@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/gl_textures.h"
 #include "render/shaders/shaders.h"
 #include "render/sweep.h"
 
@@ -11,7 +12,6 @@ namespace cprsim {
 
 namespace {
 
-constexpr int kSamples = 4;  // all that Mesa's software renderer offers
 constexpr double kShadowSoftness =
     0.02;  // widest half shadow, as a fraction of the shadow map's edge
 constexpr double kShadowOffsetTexels =
@@ -29,54 +29,6 @@ std::string fragment(const char* source, const std::string& defines = "") {
 
 }  // namespace
 
-struct GlPainter::Textures {
-  /// What the key light sees: depths, and how much of a texel is covered, at what depth.
-  struct Shadow {
-    Shadow(const Gl& gl, int size)
-        : depth(make_texture(gl, GL_DEPTH_COMPONENT16, size, size, 1)),
-          cover(make_texture(gl, GL_RG16, size, size, 1)),
-          target(make_target(gl, {cover}, depth, 1)) {}
-
-    GlName depth, cover, target;
-  };
-
-  Textures(const Gl& gl, int w, int h, int shadow_size)
-      : object_color(make_texture(gl, GL_RGBA8, w, h, kSamples)),
-        object_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, kSamples)),
-        kept_depth(make_texture(gl, GL_DEPTH_COMPONENT24, w, h, kSamples)),
-        picture(make_texture(gl, GL_RGBA8, w, h, 1)),
-        in_light(make_texture(gl, GL_RGBA8, w, h, 1)),
-        in_shade(make_texture(gl, GL_RGBA8, w, h, 1)),
-        range(make_texture(gl, GL_R32F, w, h, 1)),
-        to_objects(make_target(gl, {object_color}, object_depth, kSamples)),
-        to_kept_depth(make_target(gl, {}, kept_depth, kSamples)),
-        to_picture(make_target(gl, {picture}, 0, 1)),
-        to_in_light(make_target(gl, {in_light, range}, 0, 1)),
-        to_in_shade(make_target(gl, {in_shade}, 0, 1)),
-        to_range(make_target(gl, {range}, 0, 1)),
-        still(gl, shadow_size),
-        moving(gl, shadow_size),
-        compare(gl, GlName::Kind::kSampler),
-        levels(gl, GlName::Kind::kSampler) {
-    for (GLuint sampler : {GLuint(compare), GLuint(levels)}) {
-      gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-      gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    }
-    for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
-      gl.SamplerParameteri(compare, filter, GL_LINEAR);
-      gl.SamplerParameteri(levels, filter, GL_LINEAR);
-    }
-    gl.SamplerParameteri(levels, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
-    gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    gl.SamplerParameteri(compare, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  }
-
-  GlName object_color, object_depth, kept_depth, picture, in_light, in_shade, range;
-  GlName to_objects, to_kept_depth, to_picture, to_in_light, to_in_shade, to_range;
-  Shadow still, moving;
-  GlName compare, levels;
-};
-
 GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size, bool other_lights,
                      const std::vector<Part>& parts)
     : gl_(gl),
@@ -85,7 +37,7 @@ GlPainter::GlPainter(const Gl& gl, int width, int height, int shadow_size, bool 
       shadow_size_(shadow_size),
       other_lights_(other_lights),
       parts_(parts),
-      textures_(std::make_unique<Textures>(gl, width, height, shadow_size)),
+      textures_(std::make_unique<GlTextures>(gl, width, height, shadow_size)),
       tubes_(gl),
       tube_shadows_(gl),
       ribbons_(gl),
@@ -184,7 +136,7 @@ bool GlPainter::drawn(std::size_t part, Which which) const {
 
 void GlPainter::draw_shadows(const Frame& frame, Which which) {
   const bool on_top = which == Which::kMoving;
-  const Textures::Shadow& shadow = which == Which::kStill ? textures_->still : textures_->moving;
+  const GlTextures::Shadow& shadow = which == Which::kStill ? textures_->still : textures_->moving;
   gl_.Disable(GL_SCISSOR_TEST);
   if (on_top) {
     // depths of what stands still, but not its cover: that is in the stored picture
@@ -391,7 +343,7 @@ void GlPainter::set_lighting(const Program& program, const Frame& frame, const S
   program.set("shadow_map", static_cast<int>(kShadowMap));
   program.set("shadow_cover", static_cast<int>(kShadowCover));
   const bool still = shine.casters == Which::kStill;
-  const Textures::Shadow& shadow = still ? textures_->still : textures_->moving;
+  const GlTextures::Shadow& shadow = still ? textures_->still : textures_->moving;
   bind(kShadowMap, GL_TEXTURE_2D, shadow.depth, textures_->compare);
   bind(kShadowCover, GL_TEXTURE_2D, shadow.cover, textures_->levels);
 }

@@ -17,6 +17,8 @@
 
 namespace cprsim {
 
+struct GlTextures;
+
 /// Everything one picture depends on.
 struct Frame {
   View view;
@@ -63,8 +65,6 @@ class GlPainter {
     Which casters = Which::kAll;
   };
 
-  struct Textures;
-
   void draw_shadows(const Frame& frame, Which which);
   void draw_objects(const Frame& frame, Which which, const Region& region, const Shine& shine);
   void draw_sweeps_and_glass(const Frame& frame, Which which);
@@ -91,7 +91,7 @@ class GlPainter {
   const std::vector<Part>& parts_;
   std::unique_ptr<Program> objects_, shadows_;
   std::map<std::tuple<Ground, bool, bool, bool, bool>, std::unique_ptr<Program>> grounds_;
-  std::unique_ptr<Textures> textures_;
+  std::unique_ptr<GlTextures> textures_;
   std::vector<Geometry> geometries_;
   Geometry tubes_, tube_shadows_, ribbons_, tiles_;
 };
