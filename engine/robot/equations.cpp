@@ -206,9 +206,10 @@ Vec6 Equations::body_rows(std::size_t b) {
   if (drag_ > 0) {
     const double k = drag_ * robot_.scale.force / robot_.scale.length,
                  k_turn = drag_ * robot_.scale.moment();
-    rows.head<3>() -= k_turn * log_so3(body.R * marked_[b].R.transpose());
+    const Vec3 turned = log_so3(body.R * marked_[b].R.transpose());
+    rows.head<3>() -= k_turn * turned;
     rows.tail<3>() -= k * (body.p - marked_[b].p);
-    tangent.topLeftCorner<3, 3>() -= k_turn * Mat3::Identity();
+    tangent.topLeftCorner<3, 3>() -= k_turn * right_jacobian_inverse(-turned);
     tangent.bottomRightCorner<3, 3>() -= k * Mat3::Identity();
   }
   return rows;

@@ -26,7 +26,7 @@ Vec12 state_units(const RodScale& s) {
   return d;
 }
 
-/// The body's motion seen at the joint: phi_J = phi, dp_J = dp + phi × arm.
+/// The body's motion seen at the rod's end: phi_E = phi, dp_E = dp + phi × arm.
 Mat6 carried_to(const Vec3& arm) {
   Mat6 C = Mat6::Identity();
   C.block<3, 3>(3, 0) = -hat(arm);
@@ -44,12 +44,13 @@ void ShootingRod::start_columns(const Port& base, double* Y0) const {
   const NodeState& start = starts_.front();
   if (base_.fixed()) {
     const Mat3 Q = base.R.transpose() * Mat3(rotation_of(start));
-    const Vec3 gap = base_gap_.head<3>() * scale_.length;
-    Y.block<3, 1>(0, affine) = -(base.R * (log_so3(Q) - base_gap_.tail<3>()));
+    const Vec3 gap = base_gap_.head<3>() * scale_.length, e = log_so3(Q);
+    // d log Q = J_l^-1(e) psi
+    Y.block<3, 1>(0, affine) = -(base.R * (right_jacobian(-e) * (e - base_gap_.tail<3>())));
     Y.block<3, 1>(3, affine) = base.p + base.R * gap - position_of(start);
     Y.block<3, 3>(6, 0).diagonal().setConstant(port_scale_.force);
     Y.block<3, 3>(9, 3).diagonal().setConstant(port_scale_.moment);
-    if (columns_ == kWide) Y.block<6, 6>(0, 6) = carried_to(base.arm);
+    if (columns_ == kWide) Y.block<6, 6>(0, 6) = carried_to(position_of(start) - base.p + base.arm);
     return;
   }
   const EndRows rows = base_.rows(start, base, scale_);
@@ -73,14 +74,14 @@ void ShootingRod::apply_load_columns(std::size_t node, const NodeState& state, d
     if (load_at_[i] != node || !load.follower) continue;
     const Mat3 R = rotation_of(state);
     ColumnsMap Y(Y0, 12, columns_);
-    const RowMajor12 phi = Y.topRows<3>().replicate(1, 1).eval();
-    Y.middleRows<3>(6) += hat(R * load.force) * phi.topRows<3>();
-    Y.middleRows<3>(9) += hat(R * load.torque) * phi.topRows<3>();
+    Y.middleRows<3>(6) += hat(R * load.force) * Y.topRows<3>();
+    Y.middleRows<3>(9) += hat(R * load.torque) * Y.topRows<3>();
   }
 }
 
 // At a segment's end: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are
-// z' = R z + G_A zeta_A + g, and the particular columns keep only what is orthogonal to Q.
+// z' = R z + G_A zeta_A + g, and the particular columns keep only what is orthogonal to Q. Turning
+// is joined by log(R_reached R_start^T) = e = 0, hence phi_start = exp(-e) (phi_reached + e).
 void ShootingRod::orthonormalize(std::size_t segment, const NodeState& reached, double* Y0) {
   ColumnsMap Y(Y0, 12, columns_);
   const int affine = affine_column(columns_);
@@ -90,6 +91,9 @@ void ShootingRod::orthonormalize(std::size_t segment, const NodeState& reached, 
       position_of(reached) - position_of(start), force_of(reached) - force_of(start),
       moment_of(reached) - moment_of(start);
   Y.col(affine) += mismatch;
+  const Mat3 back = exp_so3(-mismatch.head<3>());
+  for (int c = 0; c < columns_; ++c)
+    Y.col(c).head<3>() = (back * Y.col(c).head<3>()).eval();
   const Vec12 d = state_units(port_scale_);
   Y = d.cwiseInverse().asDiagonal() * Y;
   Mat12x6 Y_z = Y.leftCols<6>();

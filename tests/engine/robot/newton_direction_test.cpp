@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole linearisation at once: along the Newton direction d at a state x where no row vanishes,
+//   d merit(x + alpha d) / d alpha = -2 merit at alpha = 0
+// holds if and only if sum r_i (J d + r)_i = 0, which an error in any derivative breaks.
+#include <gtest/gtest.h>
+
+#include "tests/engine/robot/sample_scenes.h"
+
+namespace cprsim {
+namespace {
+
+enum class Mode { kStatic, kBackwardEuler, kGeneralizedAlpha };
+
+struct Setting {
+  Mode mode = Mode::kStatic;
+  double h = 1. / 300;
+  double relaxation = 0, softness = 0, fraction = 1;
+  bool bodies_held = false;
+};
+
+StageRates rates_of(const Setting& setting, Robot& robot, Equations& equations, Numbers& numbers) {
+  if (setting.mode == Mode::kStatic) return StageRates{};
+  const bool euler = setting.mode == Mode::kBackwardEuler;
+  return start_step(robot, equations,
+                    euler ? SchemeKind::kBackwardEuler : SchemeKind::kGeneralizedAlpha, setting.h,
+                    numbers);
+}
+
+/// |slope of merit / (-2 merit) - 1| at a generic state; 1 if there is no direction.
+double slope_error(const Scene& scene, const Setting& setting, unsigned seed) {
+  Numbers numbers(seed);
+  Robot robot = build_robot(scene);
+  Equations equations(robot, 1e-9);
+  equations.set_instant(0, true, StageRates{});
+  equations.mark_start();
+  const StageRates rates = rates_of(setting, robot, equations, numbers);
+  equations.hold_bodies(setting.bodies_held);
+  equations.set_instant(0, true, rates);
+  disturb(robot, equations, numbers, 0.05);
+  equations.evaluate();
+  if (setting.fraction < 1) equations.set_fraction(setting.fraction);
+  if (setting.relaxation > 0) equations.set_relaxation(setting.relaxation);
+  if (setting.softness > 0) equations.set_softness(setting.softness);
+  equations.set_instant(0, true, rates);  // now that there are states, segments are cut
+  disturb(robot, equations, numbers, 0.05);
+
+  const double merit = equations.evaluate().merit;
+  if (!equations.find_direction(0)) return 1;
+  equations.keep();
+  const auto merit_at = [&](double alpha) {
+    equations.move(alpha);
+    return equations.evaluate().merit;
+  };
+  // directions are anything between 1 and 1e10 long: the difference that fits best
+  double error = 1;
+  for (double a = 1e-2; a > 1e-13; a *= 0.1) {
+    const double slope =
+        (8 * (merit_at(a) - merit_at(-a)) - (merit_at(2 * a) - merit_at(-2 * a))) / (12 * a);
+    error = std::min(error, std::abs(slope / (-2 * merit) - 1));
+  }
+  return error;
+}
+
+// fourth-order differences reach 1e-9 and better; round-off of stiff inertia is most of that
+constexpr double kTolerance = 1e-7;
+
+void expect_exact(const Scene& scene, const Setting& setting, const std::string& what) {
+  for (unsigned seed = 1; seed <= 3; ++seed)
+    EXPECT_LT(slope_error(scene, setting, seed), kTolerance) << what << ", state " << seed;
+}
+
+constexpr EndJoint kHeld[] = {EndJoint::kFixed, EndJoint::kRevolute, EndJoint::kUniversal,
+                              EndJoint::kBall};
+constexpr ArcIntegrator kIntegrators[] = {ArcIntegrator::kEuler, ArcIntegrator::kRk4,
+                                          ArcIntegrator::kGauss2, ArcIntegrator::kGauss4,
+                                          ArcIntegrator::kGauss6};
+const Pose kTop{Eigen::AngleAxisd(0.4, Vec3(0.6, 0.8, 0)).toRotationMatrix(), {0.1, 0.05, 0.85}};
+
+void set_all_effects(Scene& scene) {
+  for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kShear, Effect::kRotaryInertia,
+                   Effect::kDamping})
+    scene.effects.set(e, true);
+}
+
+std::string label(int a, int b, bool spin) {
+  return "base " + std::to_string(a) + ", tip " + std::to_string(b) + (spin ? ", spin free" : "");
+}
+
+TEST(NewtonDirection, IsExactForEveryJointAtTheBase) {
+  for (bool spin : {false, true})
+    for (EndJoint joint : kHeld) {
+      RodEndSpec base = rod_end(joint, kWorld, Pose{});
+      base.spin_free = spin;
+      const Scene scene = grounded_rod(base, rod_end(EndJoint::kFixed, kWorld, kTop));
+      expect_exact(scene, {}, label(static_cast<int>(joint), 1, spin));
+    }
+  // a free base: what holds the rod is the tip
+  expect_exact(grounded_rod(rod_end(EndJoint::kFree, kWorld, Pose{}),
+                            rod_end(EndJoint::kFixed, kWorld, kTop)),
+               {}, "free base");
+}
+
+TEST(NewtonDirection, IsExactForEveryJointAtTheTip) {
+  for (bool spin : {false, true})
+    for (EndJoint joint : kHeld) {
+      RodEndSpec tip = rod_end(joint, kWorld, kTop);
+      tip.spin_free = spin;
+      const Scene scene = grounded_rod(rod_end(EndJoint::kFixed, kWorld, Pose{}), tip);
+      expect_exact(scene, {}, label(1, static_cast<int>(joint), spin));
+    }
+  expect_exact(grounded_rod(rod_end(EndJoint::kFixed, kWorld, Pose{}), RodEndSpec{}), {},
+               "free tip");
+}
+
+TEST(NewtonDirection, IsExactForRodsBetweenMovingBodies) {
+  for (EndJoint base : kHeld)
+    for (EndJoint tip : {EndJoint::kFixed, EndJoint::kUniversal}) {
+      const std::string what = label(static_cast<int>(base), static_cast<int>(tip), false);
+      Scene scene = chain_of_rods(base, tip);
+      expect_exact(scene, {}, what + ", statics");
+      set_all_effects(scene);
+      expect_exact(scene, {}, what + ", statics, extensible");
+      expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+      expect_exact(scene, {Mode::kGeneralizedAlpha}, what + ", dynamics without body rates");
+    }
+}
+
+TEST(NewtonDirection, IsExactForEveryEffectAlone) {
+  for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kShear, Effect::kRotaryInertia,
+                   Effect::kDamping}) {
+    Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+    scene.effects.set(Effect::kGravity, false);
+    scene.effects.set(e, true);
+    expect_exact(scene, {}, std::string("statics, ") + effect_name(e));
+    expect_exact(scene, {Mode::kBackwardEuler}, std::string("dynamics, ") + effect_name(e));
+  }
+}
+
+TEST(NewtonDirection, IsExactForEveryIntegrator) {
+  for (ArcIntegrator integrator : kIntegrators) {
+    const std::string what = "integrator " + std::to_string(static_cast<int>(integrator));
+    Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kBall);
+    scene.solver.integrator = integrator;
+    scene.solver.points = 8;
+    expect_exact(scene, {}, what + ", inextensible");
+    expect_exact(scene, {Mode::kBackwardEuler}, what + ", inextensible, dynamics");
+    set_all_effects(scene);
+    expect_exact(scene, {}, what + ", extensible");
+    expect_exact(scene, {Mode::kBackwardEuler}, what + ", extensible, dynamics");
+  }
+}
+
+TEST(NewtonDirection, IsExactAcrossManySegments) {
+  Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+  scene.solver.points = 12;
+  const auto segments = [&](double h) {
+    Robot robot = build_robot(scene);
+    Equations equations(robot, 1e-9);
+    Numbers numbers(1);
+    const StageRates rates = start_step(robot, equations, SchemeKind::kBackwardEuler, h, numbers);
+    equations.set_instant(0, true, rates);
+    return robot.rods[1].model->segments();
+  };
+  ASSERT_GE(segments(1. / 300), 2);
+  ASSERT_GE(segments(1. / 4000), 4);
+  for (double h : {1. / 300, 1. / 4000}) {
+    expect_exact(scene, {Mode::kBackwardEuler, h}, "h = " + std::to_string(h));
+    expect_exact(scene, {Mode::kGeneralizedAlpha, h}, "h = " + std::to_string(h));
+  }
+  set_all_effects(scene);
+  expect_exact(scene, {Mode::kBackwardEuler, 1. / 4000}, "extensible");
+}
+
+LoadSpec sample_load(bool follower) {
+  LoadSpec load;
+  load.follower = follower;
+  load.force = {0.8, -0.5, 0.6};
+  load.torque = {-0.3, 0.4, 0.5};
+  load.R_expressed = Eigen::AngleAxisd(0.7, Vec3::UnitX()).toRotationMatrix();
+  return load;
+}
+
+TEST(NewtonDirection, IsExactUnderDeadAndFollowerLoads) {
+  for (bool follower : {false, true}) {
+    for (double s : {0., 0.5, 1.}) {
+      Scene scene = chain_of_rods(EndJoint::kRevolute, EndJoint::kUniversal);
+      LoadSpec load = sample_load(follower);
+      load.rod = 1;
+      load.rod_s = s;
+      scene.loads.push_back(load);
+      const std::string what = "s = " + std::to_string(s) + (follower ? ", follower" : ", dead");
+      expect_exact(scene, {}, what);
+      expect_exact(scene, {Mode::kBackwardEuler, 1. / 2000}, what + ", dynamics");
+    }
+    Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kFixed);
+    LoadSpec load = sample_load(follower);
+    load.at = {1, {kTop.R, {0.1, 0.2, -0.1}}};
+    scene.loads.push_back(load);
+    expect_exact(scene, {}, follower ? "follower on a body" : "dead load on a body");
+  }
+}
+
+DriveSpec joint_drive(int joint, DriveQuantity quantity) {
+  DriveSpec drive;
+  drive.joint = joint;
+  drive.quantity = quantity;
+  drive.profile = constant_profile(0.3);
+  return drive;
+}
+
+TEST(NewtonDirection, IsExactForFreeJointsWithSpringsAndDampers) {
+  for (JointKind first : {JointKind::kRevolute, JointKind::kPrismatic})
+    for (JointKind second : {JointKind::kContinuous, JointKind::kPrismatic}) {
+      const Scene scene = jointed_arms(first, second);
+      const std::string what = "joints " + std::to_string(static_cast<int>(first)) + " and " +
+                               std::to_string(static_cast<int>(second));
+      expect_exact(scene, {}, what);
+      expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+      expect_exact(scene, {Mode::kGeneralizedAlpha}, what + ", dynamics without body rates");
+    }
+}
+
+TEST(NewtonDirection, IsExactForDrivenJoints) {
+  for (JointKind kind : {JointKind::kRevolute, JointKind::kPrismatic})
+    for (DriveQuantity quantity :
+         {DriveQuantity::kPosition, DriveQuantity::kEffort, DriveQuantity::kVelocity}) {
+      Scene scene = jointed_arms(kind, JointKind::kRevolute);
+      scene.drives.push_back(joint_drive(0, quantity));
+      const std::string what = "joint " + std::to_string(static_cast<int>(kind)) + ", drive " +
+                               std::to_string(static_cast<int>(quantity));
+      expect_exact(scene, {}, what);
+      expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+    }
+}
+
+TEST(NewtonDirection, IsExactOnEveryRungOfTheLadder) {
+  for (EndJoint base : {EndJoint::kFixed, EndJoint::kRevolute}) {
+    Scene scene = chain_of_rods(base, EndJoint::kUniversal);
+    Setting setting;
+    setting.fraction = 0.4;
+    expect_exact(scene, setting, "part of the loads, gaps held open");
+    setting.relaxation = 2;
+    expect_exact(scene, setting, "drag");
+    setting = {};
+    setting.softness = 2e-2;
+    expect_exact(scene, setting, "soft rods");
+    setting = {};
+    setting.bodies_held = true;
+    expect_exact(scene, setting, "bodies held");
+  }
+  Setting setting;
+  setting.fraction = 0.4;
+  expect_exact(jointed_arms(JointKind::kRevolute, JointKind::kPrismatic), setting, "joint gaps");
+}
+
+}  // namespace
+}  // namespace cprsim
