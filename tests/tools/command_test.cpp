@@ -206,6 +206,18 @@ TEST_F(Cprsim, AnswersFourAndKeepsWhatWasComputedWhenTimeIsUp) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/swing/swing.csv"));
 }
 
+TEST_F(Cprsim, AnswersFourAndSaysWhereAndWhyWhenAStepHasNoSolution) {
+  const Outcome outcome = run("swing.xml --set 'gravity=0 0 -1e12'");
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_TRUE(has(outcome.err, "m::beam")) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "residual")) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "at         t = ")) << outcome.err;
+  const Json json = report();
+  EXPECT_EQ(json["status"], "failed");
+  EXPECT_FALSE(json["failure"]["solve"]["worst_row"].get<std::string>().empty());
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/swing/swing.csv"));
+}
+
 TEST_F(Cprsim, AnswersFiveWhereItMayNotWrite) {
   std::filesystem::create_directory(folder_ / "mine");
   spill(folder_ / "mine/thesis.tex", "x");

@@ -4,6 +4,10 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstring>
+
+#include "tools/cprsim/exit_code.h"
+#include "tools/cprsim/version.h"
 
 namespace cprsim {
 
@@ -17,6 +21,18 @@ extern "C" void on_signal(int signal) {
   received = signal;
 }
 
+extern "C" void on_abort(int) {
+  const auto say = [](const char* text) {
+    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) _exit(kExitInternalError);
+  };
+  say("cprsim: internal error: a bug in cprsim ");
+  say(version().number);
+  say(" (");
+  say(version().revision);
+  say("). Please report it with the scene and the command line.\n");
+  _exit(kExitInternalError);
+}
+
 }  // namespace
 
 void watch_signals() {
@@ -27,6 +43,8 @@ void watch_signals() {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = on_abort;
+  sigaction(SIGABRT, &action, nullptr);
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, nullptr);
   sigaction(SIGXFSZ, &action, nullptr);

@@ -62,12 +62,18 @@ void blame_step(const ProblemFacts& facts, Causes& causes) {
       facts.step, fastest->name, steps, 1 / (kStepsPerPeriod * 2 * fastest->first_frequency)));
 }
 
+/// Held by the world, so that no rod carries it.
+bool is_held(const Scene& scene, int body) {
+  return scene.bodies[static_cast<std::size_t>(body)].is_static ||
+         std::any_of(scene.joints.begin(), scene.joints.end(), [&](const JointSpec& joint) {
+           return joint.kind == JointKind::kFixed && joint.child == body && joint.parent == kWorld;
+         });
+}
+
 void blame_buckling(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
   double weight = 0;
-  for (const BodySpec& body : scene.bodies) {
-    if (!body.is_static && scene.effects.has(Effect::kGravity)) {
-      weight += body.mass * scene.gravity.norm();
-    }
+  for (std::size_t i = 0; i < scene.bodies.size() && scene.effects.has(Effect::kGravity); ++i) {
+    if (!is_held(scene, static_cast<int>(i))) weight += scene.bodies[i].mass * scene.gravity.norm();
   }
   double carried = 0;
   for (const RodFacts& rod : facts.rods)

@@ -25,7 +25,7 @@ constexpr std::string_view kHelp =
 Examples
   cprsim scene.xml                          run it: record, film, check as the scene says
   cprsim run scene.xml --duration 1 --with shear -o try
-  cprsim scene.xml --set robot::leg_1/length=0.42 --still shot.png@0.5
+  cprsim scene.xml --without damping --still shot.png@0.5
   cprsim check scenes/robots/*.xml          only validate
   cprsim info scene.xml                     stiffness, frequencies, effects and their advisor
 

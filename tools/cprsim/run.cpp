@@ -106,7 +106,6 @@ int exit_code_of(const Run& run) {
 void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
   RunReport& report = run.report;
   report.time = simulation.time();
-  report.end_time = simulation.end_time();
   report.statistics = simulation.statistics();
   report.last_solve = simulation.last_report();
   if (simulation.status() == RunStatus::kFailed && report.end == RunEnd::kRunning) {
@@ -141,6 +140,7 @@ void show(const Run& run) {
 int run_scene(Run& run, Simulation& simulation) {
   const OutputFolder folder(run.folder);
   run.report.facts = simulation.facts();
+  run.report.end_time = simulation.end_time();
   run.write_report();  // says "running", and marks the folder as ours if this process is killed
   try {
     Outputs outputs(run.scene, run.options, run.folder, run.console);

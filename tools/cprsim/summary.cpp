@@ -10,16 +10,20 @@ namespace cprsim {
 
 namespace {
 
+/// "2.6x real time"
+std::string speed_of(double factor) {
+  return fmt::format("{:.{}f}x real time", factor, factor < 10 ? 1 : 0);
+}
+
 std::string first_line(const RunReport& report) {
   const RunStatistics& statistics = report.statistics;
   if (report.end_time <= 0) {
     return fmt::format("{}: static equilibrium found in {:.3g} s, {} iterations\n", report.label,
                        statistics.start_seconds, report.last_solve.iterations);
   }
-  return fmt::format(
-      "{}: {:.3f} s simulated in {:.3g} s ({:.2g}x real time), {} steps, {} rejected\n",
-      report.label, report.time, statistics.start_seconds + statistics.step_seconds,
-      report.real_time_factor(), statistics.steps, statistics.rejected);
+  return fmt::format("{}: {:.3f} s simulated in {:.3g} s ({}), {} steps, {} rejected\n",
+                     report.label, report.time, statistics.start_seconds + statistics.step_seconds,
+                     speed_of(report.real_time_factor()), statistics.steps, statistics.rejected);
 }
 
 std::string effects_line(const Scene& scene) {
@@ -98,8 +102,9 @@ std::string expect_lines(const RunReport& report) {
 std::string wrote_line(const RunReport& report, const std::string& folder) {
   std::vector<std::string> inside{"run.json"}, elsewhere;
   for (const WrittenFile& file : report.files) {
-    const bool absolute = !file.name.empty() && file.name.front() == '/';
-    if (file.name.empty() || file.name.back() == '/') continue;
+    const bool absolute = file.name.front() == '/';
+    // the .pvd stands for the folder of its frames
+    if (file.kind == "vtk" && file.name.back() == '/') continue;
     (absolute ? elsewhere : inside).push_back(file.name);
   }
   std::string line = "  wrote      " + folder + "/";
@@ -145,10 +150,8 @@ std::string explain_failure(const RunReport& report, const std::string& folder) 
                       report.end_time, report.statistics.steps);
   if (report.end == RunEnd::kFailed) {
     const SolveReport& solve = report.last_solve;
-    text += fmt::format("\n  solver     {} in {} after {} iterations, residual {:.2e}",
-                        to_string(solve.status), to_string(solve.stage), solve.iterations,
-                        solve.residual);
-    if (!solve.worst_row.empty()) text += "\n  worst row  " + solve.worst_row;
+    text += fmt::format("\n  solver     last tried {}, residual from {:.1e} to {:.1e}",
+                        to_string(solve.stage), solve.initial_residual, solve.residual);
     for (std::size_t i = 0; i < report.likely_causes.size(); ++i) {
       text += (i == 0 ? "\n  perhaps    " : "\n             ") + report.likely_causes[i];
     }
