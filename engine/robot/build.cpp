@@ -137,20 +137,22 @@ bool off_for(const RodSpec& rod, const char* effect) {
   return std::find(rod.without.begin(), rod.without.end(), effect) != rod.without.end();
 }
 
-// Measured on the published Stewart-Gough robot (rods bent by about a radian): N cells of gauss6 leave an error of
-// 3.4e-8 L (6 / N)^6. An accuracy asked for gets ten times less; without one, 6 cells. Other integrators are there to
-// be compared with and get cells for about the same cost.
+// Measured on the published Stewart-Gough robot (rods bent by about a radian): N cells of gauss6
+// leave an error of 3.4e-8 L (6 / N)^6. An accuracy asked for gets ten times less; without one, 6
+// cells. Other integrators are there to be compared with and get cells for about the same cost.
 int default_cells(ArcIntegrator integrator, const std::optional<double>& accuracy, double length) {
   if (integrator != ArcIntegrator::kGauss6) return 12;
   if (!accuracy) return 6;
-  return std::clamp(static_cast<int>(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6))), 3, 60);
+  return std::clamp(static_cast<int>(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6))),
+                    3, 60);
 }
 
 ShootingOptions shooting_options(const Scene& scene, const RodSpec& rod) {
   auto has = [&](Effect e) { return scene.effects.has(e) && !off_for(rod, effect_name(e)); };
   ShootingOptions o;
   o.integrator = scene.solver.integrator.value_or(kDefaultIntegrator);
-  o.cells = scene.solver.points.value_or(default_cells(o.integrator, scene.solver.accuracy, rod.length));
+  o.cells =
+      scene.solver.points.value_or(default_cells(o.integrator, scene.solver.accuracy, rod.length));
   o.extension = has(Effect::kExtension);
   o.shear = has(Effect::kShear);
   o.rotary_inertia = has(Effect::kRotaryInertia);

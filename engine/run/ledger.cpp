@@ -66,7 +66,8 @@ void EnergyLedger::sum_up() {
     const double kinetic = free_bodies_->kinetic_energy(), gravity = free_bodies_->gravity_energy();
     e.kinetic += kinetic;
     e.gravity += gravity;
-    // only contact and drag change the energy of bodies in flight: what is gone counts as dissipated
+    // only contact and drag change the energy of bodies in flight: what is gone counts as
+    // dissipated
     if (free_energy_known_) e.dissipated += free_energy_ - (kinetic + gravity);
     free_energy_ = kinetic + gravity;
     free_energy_known_ = true;

@@ -66,7 +66,7 @@ StepPlan plan_steps(const Scene& scene) {
 }
 
 struct Simulation::Parts {
-  const Scene& scene;
+  const Scene scene;  // bodies, rods and loads point into it
   std::unique_ptr<FreeBodies> free_bodies;
   Robot robot;
   Equations equations;
@@ -84,13 +84,13 @@ struct Simulation::Parts {
   RunStatistics statistics;
   Snapshot now, before;
 
-  Parts(const Scene& s, std::unique_ptr<FreeBodies> free)
-      : scene(s),
+  Parts(Scene s, std::unique_ptr<FreeBodies> free)
+      : scene(std::move(s)),
         free_bodies(std::move(free)),
-        robot(build_robot(s)),
-        equations(robot, s.solver.residual_tolerance.value_or(1e-9)),
-        plan(plan_steps(s)),
-        marcher(robot, equations, plan.scheme, step_options(s.solver)),
+        robot(build_robot(scene)),
+        equations(robot, scene.solver.residual_tolerance.value_or(1e-9)),
+        plan(plan_steps(scene)),
+        marcher(robot, equations, plan.scheme, step_options(scene.solver)),
         ledger(robot, free_bodies.get()) {
     h = plan.adaptive ? std::min(plan.step, 1e-3) : plan.step;
     if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
@@ -193,9 +193,9 @@ struct Simulation::Parts {
   void arrive(double t_new, double h_used, const Marcher::Outcome& outcome);
 };
 
-Simulation::Simulation(const Scene& scene, std::unique_ptr<FreeBodies> free_bodies) {
+Simulation::Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies) {
   const auto begin = Clock::now();
-  parts_ = std::make_unique<Parts>(scene, std::move(free_bodies));
+  parts_ = std::make_unique<Parts>(std::move(scene), std::move(free_bodies));
   parts_->facts = problem_facts(parts_->robot, parts_->equations, parts_->plan);
   parts_->statistics.build_seconds = seconds_since(begin);
 }

@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "engine/model/scene.h"
+#include "engine/robot/free_bodies.h"
 #include "engine/run/snapshot.h"
 #include "engine/solve/report.h"
 
 namespace cprsim {
-
-class FreeBodies;  // engine/robot/free_bodies.h: bodies that no rod holds, integrated by somebody
-                   // else
 
 /// How a run ended.
 enum class RunStatus {
@@ -58,7 +56,7 @@ class Simulation {
   /// them.
   /// @throws std::invalid_argument if the scene asks for what the engine cannot do (a loader checks
   /// first).
-  explicit Simulation(const Scene& scene, std::unique_ptr<FreeBodies> free_bodies = nullptr);
+  explicit Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies = nullptr);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
