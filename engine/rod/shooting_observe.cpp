@@ -97,18 +97,26 @@ void ShootingRod::start_tracks() {
 
 // Velocities that a direction of the unknowns gives stages and nodes, cell by cell:
 // phi_j = phi_a + R_j J_r(Omega_j) dOmega_j, dtau_j = phi_j × tau_j + R_j dv_j, dp_j = dp_a + h sum
-// a_jk dtau_k.
+// a_jk dtau_k, and where v is no unknown dv_j = C_se R_j^T (dn + n_j × phi_j) with dn that of the
+// cell's start.
 void ShootingRod::start_tracks_moving() {
   start_tracks();
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto n = static_cast<Eigen::Index>(stages_.size());
   const Eigen::Index strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
-  Vec3 phi = start_direction_.front().head<3>(), dp = start_direction_.front().segment<3>(3);
+  Vec12 start = start_direction_.front();
+  auto phi = start.head<3>(), dp = start.segment<3>(3), dn = start.segment<3>(6);
+  auto turn_followers = [&](std::size_t node) {
+    for (std::size_t l = 0; l < load_at_.size(); ++l)
+      if (load_at_[l] == node && forcing_.loads[l].follower)
+        dn += (rotation_of(nodes_[node]) * forcing_.loads[l].force).cross(phi);
+  };
+  turn_followers(0);
   track_.v.segment<3>(3 * n) = dp;
   for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c) {
     const double h = (grid_[c + 1] - grid_[c]) * forcing_.length;
-    const CellStage* stage = &stages_[c * S];
+    CellStage* stage = &stages_[c * S];
     const double* d = &lifted_direction_[c * lifted];
     std::vector<Vec3> dtau(S), du(S), dv(S, Vec3::Zero());
     Vec3 dOmega_end = Vec3::Zero(), Omega_end = Vec3::Zero();
@@ -119,8 +127,12 @@ void ShootingRod::start_tracks_moving() {
       const Vec3 Omega = vec(stage[j].Omega), w = vec(stage[j].w), dw = vec(d + 3 * j);
       const Mat3 R = Eigen::Map<const RowMatrix>(stage[j].R), J_r = right_jacobian(Omega);
       du[j] = J_r * dw + right_jacobian_derivative(Omega, w) * dOmega;
+      const Vec3 phi_j = phi + R * (J_r * dOmega);
       if (law_ == CellLaw::kExtensible) dv[j] = vec(d + 3 * S + 3 * j);
-      dtau[j] = (phi + R * (J_r * dOmega)).cross(vec(stage[j].tau)) + R * dv[j];
+      if (law_ == CellLaw::kExtensibleStatic)
+        dv[j] = vec(model_.C_se).cwiseProduct(R.transpose() * (dn + vec(stage[j].n).cross(phi_j)));
+      dtau[j] = phi_j.cross(vec(stage[j].tau)) + R * dv[j];
+      Eigen::Map<Vec3>(stage[j].omega) = R.transpose() * phi_j;
       dOmega_end += h * table_->b[j] * dw;
       Omega_end += h * table_->b[j] * w;
     }
@@ -130,6 +142,7 @@ void ShootingRod::start_tracks_moving() {
         at += h * table_->a[j][k] * dtau[k];
       const auto i = 3 * static_cast<Eigen::Index>(c * S + j);
       track_.v.segment<3>(i) = at;
+      if (options_.rotary_inertia) rotation_track_.v.segment<3>(i) = vec(stage[j].omega);
       if (!options_.damping) continue;
       track_.v.segment<3>(strains + i) = du[j];
       if (extensible_) track_.v.segment<3>(strains + 3 * n + i) = dv[j];
@@ -137,9 +150,12 @@ void ShootingRod::start_tracks_moving() {
     for (std::size_t j = 0; j < S; ++j)
       dp += h * table_->b[j] * dtau[j];
     phi += Mat3(rotation_of(nodes_[c + 1])) * (right_jacobian(Omega_end) * dOmega_end);
+    turn_followers(c + 1);
     track_.v.segment<3>(3 * (n + static_cast<Eigen::Index>(c) + 1)) = dp;
   }
   track_.set_start(track_.x, VecX(track_.v));
+  if (options_.rotary_inertia)
+    rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()), VecX(rotation_track_.v));
 }
 
 RodModel::Unknowns ShootingRod::unknowns() const {
