@@ -26,10 +26,6 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
   size_ = offset;
 }
 
-Pose Equations::body_pose(int body) const {
-  return body < 0 ? Pose{} : robot_.bodies[static_cast<std::size_t>(body)].pose();
-}
-
 PointLoad Equations::scaled_load(const LoadSpec& load) const {
   PointLoad at = load_at(load, t_, before_);
   at.force *= acting();

@@ -108,9 +108,8 @@ class Equations final : public Problem {
   void add_body_loads();
   void note(double value, Worst where, ProblemResidual& r);
 
-  Pose joint_parent(const Joint& j) const { return body_pose(j.parent); }
+  Pose body_pose(int body) const { return robot_.body_pose(body); }
 
-  Pose body_pose(int body) const;
   bool condense_rods(bool keep_all);
   void assemble();
   void assemble_rod(std::size_t r);

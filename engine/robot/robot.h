@@ -72,6 +72,12 @@ struct Robot {
   RobotScale scale;
 
   Pose pose_of(const Attachment& a) const;
+
+  /// Of a Newton body; identity for the ground.
+  Pose body_pose(int body) const {
+    return body < 0 ? Pose{} : bodies[static_cast<std::size_t>(body)].pose();
+  }
+
   Port port(const Attachment& a) const;
   Pose link_pose(std::size_t link) const;
 

@@ -9,7 +9,6 @@ namespace cprsim {
 
 void EnergyLedger::collect(double t, bool before) {
   points_.clear();
-  scalars_.clear();
   for (const BodyLoad& load : robot_.body_loads) {
     const Pose X = robot_.pose_of(load.at);
     const PointLoad at = load_at(*load.spec, t, before);
@@ -17,7 +16,7 @@ void EnergyLedger::collect(double t, bool before) {
     points_.push_back({axes * at.force, axes * at.torque, X.p, X.R});
   }
   for (const RobotRod& rod : robot_.rods) {
-    if (rod.loads.empty() && !rod.length_drive) continue;
+    if (rod.loads.empty()) continue;
     const RodSample sample = rod.model->observe();
     for (const LoadSpec* load : rod.loads) {
       const PointLoad at = load_at(*load, t, before);
@@ -27,21 +26,28 @@ void EnergyLedger::collect(double t, bool before) {
       const Mat3 axes = at.follower ? nearest->rotation : Mat3(Mat3::Identity());
       points_.push_back({axes * at.force, axes * at.torque, nearest->position, nearest->rotation});
     }
-    if (rod.length_drive) scalars_.push_back({rod.model->energy().feed_power, rod.length});
   }
+}
+
+double EnergyLedger::drive_power(double t, bool before) const {
+  double power = 0;
+  for (const RobotRod& rod : robot_.rods)
+    if (rod.length_drive)
+      power += rod.model->energy().feed_power * rod.length_drive->evaluate(t, before).rate;
   for (const JointDrive& drive : robot_.joint_drives) {
     const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
-    const Pose parent =
-        joint.parent < 0 ? Pose{} : robot_.bodies[static_cast<std::size_t>(joint.parent)].pose();
-    // what spring and damper exert is not the drive's
-    double effort = joint.axial_effort(parent);
-    if (!joint.q_unknown())
-      effort += joint.spec->spring_stiffness * (joint.q - joint.spec->spring_reference) +
-                joint.spec->damping * joint.track.v[0];
-    else
-      effort = joint.effort;
-    scalars_.push_back({effort, joint.q});
+    const ProfileValue value = drive.spec->profile.evaluate(t, before);
+    if (drive.spec->quantity == DriveQuantity::kEffort) {
+      power += value.value * joint.track.v[0];
+      continue;
+    }
+    const double rate = drive.spec->quantity == DriveQuantity::kVelocity ? value.value : value.rate;
+    // lambda carries spring and damper too, which are not the drive's
+    const double effort =
+        joint.axial_effort(robot_.body_pose(joint.parent)) + joint.passive_effort(rate);
+    power += effort * rate;
   }
+  return power;
 }
 
 void EnergyLedger::sum_up() {
@@ -97,10 +103,9 @@ void EnergyLedger::open() {
 void EnergyLedger::begin_step(double t) {
   collect(t, false);
   points_before_ = points_;
-  scalars_before_ = scalars_;
 }
 
-void EnergyLedger::close_step(double t, double damping_loss) {
+void EnergyLedger::close_step(double t, double damping_loss, double drive_work) {
   collect(t, true);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point &a = points_before_[i], &b = points_[i];
@@ -108,9 +113,7 @@ void EnergyLedger::close_step(double t, double damping_loss) {
     if (!a.moment.isZero() || !b.moment.isZero())
       sample_.work += 0.5 * (a.moment + b.moment).dot(log_so3(b.rotation * a.rotation.transpose()));
   }
-  for (std::size_t i = 0; i < scalars_.size(); ++i)
-    sample_.work += 0.5 * (scalars_before_[i].effort + scalars_[i].effort) *
-                    (scalars_[i].position - scalars_before_[i].position);
+  sample_.work += drive_work;
   sample_.dissipated += damping_loss;
   sum_up();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where energy comes from and goes: kinetic, elastic and potential energy of everything, the work
-// that drives and loads have done (trapezoidal in the displacement, which is exact for dead loads),
-// and what damping has taken out.
+// of loads (trapezoidal in the displacement, which is exact for dead loads) and of drives (their
+// power, by the time scheme's own quadrature), and what damping has taken out.
 #pragma once
 
 #include <vector>
@@ -23,11 +23,14 @@ class EnergyLedger {
   /// Loads as they are from t on: after a jump they differ from what close_step saw.
   void begin_step(double t);
 
-  /// @param damping_loss J taken out by damping during the step that ends at t.
-  void close_step(double t, double damping_loss);
+  /// What a step that ends at t has exchanged, J: taken out by damping, put in by drives.
+  void close_step(double t, double damping_loss, double drive_work);
 
   /// Power that damping takes out now, W.
   double damping_power() const;
+
+  /// Power that drives of joints and of rod lengths put in at time t in the present state, W.
+  double drive_power(double t, bool before) const;
 
   const EnergySample& sample() const { return sample_; }
 
@@ -37,17 +40,12 @@ class EnergyLedger {
     Mat3 rotation;
   };
 
-  struct Scalar {
-    double effort, position;
-  };
-
   void collect(double t, bool before);
   void sum_up();
 
   const Robot& robot_;
   const FreeBodies* free_bodies_;
   std::vector<Point> points_, points_before_;
-  std::vector<Scalar> scalars_, scalars_before_;
   EnergySample sample_;
   double start_ = 0;
   double free_energy_ = 0;

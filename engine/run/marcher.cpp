@@ -107,12 +107,10 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
   if (past_.empty()) past_.push_back({t, start_});
   past_accepted_ = past_.size();
   const int stages = stepper_.begin_step(h, tracks_);
-  double last_fraction = 0, last_power = ledger.damping_power();
-  std::vector<double> fractions{0}, powers{last_power};
+  std::vector<double> losses{ledger.damping_power()}, works{ledger.drive_power(t, false)};
   for (int i = 0; i < stages; ++i) {
     rates_ = stepper_.begin_stage(i, tracks_);
-    last_fraction = stepper_.stage_time(i);
-    const double time = t + last_fraction * h;
+    const double time = t + stepper_.stage_time(i) * h;
     // the end of a step may be a jump: the step itself sees what was before
     equations_.set_instant(time, true, rates_);
     SolveReport report = solve_stage(time);
@@ -124,12 +122,13 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     if (!report.converged()) return out;
     finish_stage(i);
     past_.push_back({time, equations_.unknowns()});
-    fractions.push_back(last_fraction);
-    powers.push_back(ledger.damping_power());
+    losses.push_back(ledger.damping_power());
+    works.push_back(ledger.drive_power(time, true));
   }
   out.converged = true;
   out.error = error_estimate();
-  out.damping_loss = stepper_.integrate(powers) * h;
+  out.damping_loss = stepper_.integrate(losses) * h;
+  out.drive_work = stepper_.integrate(works) * h;
   return out;
 }
 
@@ -152,7 +151,7 @@ double Marcher::error_estimate() const {
   return error;
 }
 
-void Marcher::accept(double, double) {
+void Marcher::accept() {
   stepper_.accept(tracks_);
   for (RigidBody& body : robot_.bodies)
     body.accept_tracks();

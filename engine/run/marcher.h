@@ -31,12 +31,12 @@ class Marcher {
     bool converged = false;
     SolveReport report;  ///< of the last solve; iterations and counts summed over the step
     double error = 0;    ///< estimated local error, dimensionless (length: rod length; angle: rad)
-    double damping_loss = 0;  ///< J
+    double damping_loss = 0, drive_work = 0;  ///< J
   };
 
   /// Tries a step of size h from t. Nothing is final before accept().
   Outcome attempt(double t, double h, const EnergyLedger& ledger);
-  void accept(double t, double h);
+  void accept();
   void reject();
 
   bool estimates_error() const { return stepper_.has_error_estimate(); }

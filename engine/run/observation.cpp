@@ -28,11 +28,9 @@ Snapshot take_snapshot(const Robot& robot, const FreeBodies* free_bodies, double
     JointSample sample;
     if (const int index = robot.joint_of_spec[i]; index >= 0) {
       const Joint& joint = robot.joints[static_cast<std::size_t>(index)];
-      const Pose parent =
-          joint.parent < 0 ? Pose{} : robot.bodies[static_cast<std::size_t>(joint.parent)].pose();
       sample.position = joint.q;
       sample.velocity = joint.track.v[0];
-      sample.effort = joint.axial_effort(parent);
+      sample.effort = joint.axial_effort(robot.body_pose(joint.parent));
     }
     now.joints.push_back(sample);
   }

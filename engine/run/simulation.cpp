@@ -236,13 +236,12 @@ double Simulation::Parts::controlled(double step, double error) const {
 }
 
 void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outcome& outcome) {
-  const double from = t;
-  marcher.accept(from, h_used);
+  marcher.accept();
   t = t_new;
   report = outcome.report;
   count(report);
   if (free_bodies) free_bodies->advance(h_used, link_motions(robot, free_bodies.get()));
-  ledger.close_step(t, outcome.damping_loss);
+  ledger.close_step(t, outcome.damping_loss, outcome.drive_work);
   ++statistics.steps;
   statistics.largest_step = std::max(statistics.largest_step, h_used);
   statistics.smallest_step =
@@ -299,7 +298,7 @@ void Simulation::Parts::step_quasistatic() {
   const double stop = next_break();
   double target = plan.step;
   const RobotUnknowns start = equations.unknowns();
-  const double from = t;
+  const double from = t, power = ledger.drive_power(t, false);
   ledger.begin_step(t);
   for (int failures = 0;; ++failures) {
     const double step = std::min(target, stop - from);
@@ -312,10 +311,8 @@ void Simulation::Parts::step_quasistatic() {
     }
     count(report);
     if (report.converged()) {
-      Marcher::Outcome outcome;
-      outcome.report = report;
       start_motion();
-      ledger.close_step(t, 0);
+      ledger.close_step(t, 0, 0.5 * step * (power + ledger.drive_power(t, true)));
       ++statistics.steps;
       if (t >= end) status = RunStatus::kDone;
       return;
