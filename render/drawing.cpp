@@ -11,6 +11,7 @@ namespace {
 
 /// Rods are smooth: between two sections whose tangents differ by more than this, another is put
 /// in.
+constexpr double kLeastRings = 40;     // along a rod
 constexpr double kLargestTurn = 0.09;  // rad; above 0.15 the silhouette of a bent rod shows corners
 
 Pose pose_of(const Snapshot& now, int body) {
@@ -45,7 +46,10 @@ Tube make_tube(const RodSpec& spec, const Look& look, const RodSample& rod, Colo
     if (!tube.rings.empty()) {
       const Tube::Ring last = tube.rings.back();
       const double turn = last.rotation.col(2).cross(ring.rotation.col(2)).norm();
-      const int cells = std::clamp(static_cast<int>(std::ceil(turn / kLargestTurn)), 1, 16);
+      // an S between parallel tangents turns nowhere and is bent all the same: never too few rings
+      const auto intervals = static_cast<double>(rod.points.size() - 1);
+      const int least = std::max(1, static_cast<int>(std::ceil(kLeastRings / intervals)));
+      const int cells = std::clamp(static_cast<int>(std::ceil(turn / kLargestTurn)), least, 16);
       for (int k = 1; k < cells; ++k) {
         tube.rings.push_back(between(last, ring, static_cast<double>(k) / cells));
       }

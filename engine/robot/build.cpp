@@ -246,8 +246,10 @@ Robot build_robot(const Scene& scene) {
   if (scene.effects.has(Effect::kGravity)) robot.gravity = scene.gravity;
   const Welds welds(scene);
   add_bodies(robot, welds, held_groups(scene, welds));
-  for (RigidBody& body : robot.bodies)
+  for (RigidBody& body : robot.bodies) {
     compose(robot, body);
+    body.start_tracks(Vec3::Zero(), Vec3::Zero());
+  }
   add_joints(robot);
   add_rods(robot);
   add_actions(robot);

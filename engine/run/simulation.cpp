@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "engine/robot/equations.h"
 #include "engine/robot/free_bodies.h"
@@ -216,6 +217,8 @@ const SolveReport& Simulation::start() {
     return p.report;
   }
   if (!p.free_only()) p.start_motion();
+  p.statistics.start_iterations = std::exchange(p.statistics.iterations, 0);
+  p.statistics.max_iterations = 0;
   p.ledger.open();
   p.statistics.start_seconds = seconds_since(begin);
   p.observe(0, p.statistics.start_seconds);

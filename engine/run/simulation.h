@@ -25,7 +25,8 @@ enum class RunStatus {
 /// Sums over a run, for run.json and the closing lines.
 struct RunStatistics {
   long steps = 0, rejected = 0, retried = 0;
-  long iterations = 0, max_iterations = 0;
+  long iterations = 0, max_iterations = 0;  ///< of steps
+  long start_iterations = 0;                ///< of finding the initial state
   long section_evaluations = 0, factorizations = 0;
   double worst_residual = 0;
   double smallest_step = 0, largest_step = 0;

@@ -140,6 +140,8 @@ void check_value(Reading& r, const Node& node, Expectation& e) {
                        "'" + std::string(node.value("of")) + "' has " +
                            std::to_string(e.channels.size()) + " components, " +
                            std::to_string(e.equals.size()) + " numbers are given");
+  // a run cut short by hand may end before what the scene expects
+  if (r.options.duration) return;
   const double end = r.scene.simulation.duration;
   if (r.scene.simulation.mode != Mode::kStatic && end > 0 && e.at > end * (1 + 1e-9))
     r.report.bad_value("E306", node, *node.attribute("at"), "the simulation ends before this");

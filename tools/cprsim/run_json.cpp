@@ -100,6 +100,7 @@ Json statistics_json(const RunStatistics& statistics) {
           {"retried", statistics.retried},
           {"smallest_step", statistics.smallest_step},
           {"largest_step", statistics.largest_step},
+          {"start_iterations", statistics.start_iterations},
           {"iterations", statistics.iterations},
           {"max_iterations", statistics.max_iterations},
           {"section_evaluations", statistics.section_evaluations},
