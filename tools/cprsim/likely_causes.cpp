@@ -37,14 +37,16 @@ void blame_jumps(const Scene& scene, double time, double step, Causes& causes) {
 }
 
 void blame_resolution(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
-  if (!scene.solver.points) return;
+  // Gauss collocation keeps growing and decaying solutions apart on any grid; explicit tables do not
+  const bool explicit_table = facts.integrator == "rk4" || facts.integrator == "euler";
+  if (!scene.solver.points || !explicit_table) return;
   for (const RodFacts& rod : facts.rods) {
     const double needed = std::ceil(kCellsPerGrowth * rod.growth_exponent);
     if (rod.cells >= needed) continue;
     causes.push_back(fmt::format(
-        "rod '{}' has {} points and a growth exponent of {:.3g}: give it at least {:.0f}, or leave "
-        "<space points> out",
-        rod.name, rod.cells, rod.growth_exponent, needed));
+        "rod '{}' has {} points and a growth exponent of {:.3g}: give it at least {:.0f}, or "
+        "take gauss6 instead of {}",
+        rod.name, rod.cells, rod.growth_exponent, needed, facts.integrator));
     return;
   }
 }
