@@ -10,11 +10,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Torsion constant of a rectangle with sides a >= b.
+// Torsion constant of a rectangle with sides a >= b: 1/3 - 64 b / (pi^5 a) sum tanh(n pi a / 2b) /
+// n^5 over odd n. With tanh x = 1 - 2 / (e^2x + 1) all but a few terms are 31/32 zeta(5).
 double rectangle_torsion(double a, double b) {
-  double sum = 0;
-  for (int n = 1; n <= 39; n += 2)
-    sum += std::tanh(n * kPi * a / (2 * b)) / std::pow(n, 5);
+  double sum = 1.0045237627951396;
+  for (int n = 1; n <= 11; n += 2)
+    sum -= 2 / ((std::exp(n * kPi * a / b) + 1) * std::pow(n, 5));
   return a * b * b * b * (1.0 / 3 - 64 / std::pow(kPi, 5) * (b / a) * sum);
 }
 
