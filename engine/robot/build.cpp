@@ -208,6 +208,41 @@ void add_actions(Robot& robot) {
     }
 }
 
+/// The bodies that hang on `child` by joints other than `through`; empty if the ground or `parent`
+/// is among them.
+std::vector<int> carried_by(const Robot& robot, std::size_t through) {
+  std::vector<int> found{robot.joints[through].child};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const Joint& joint = robot.joints[j];
+      if (j == through || (joint.parent != found[i] && joint.child != found[i])) continue;
+      const int other = joint.parent == found[i] ? joint.child : joint.parent;
+      if (other < 0 || other == robot.joints[through].parent) return {};
+      if (std::find(found.begin(), found.end(), other) == found.end()) found.push_back(other);
+    }
+  return found;
+}
+
+// A driven joint need not stand at 0 when the scene begins: what it carries is moved to where the
+// drive wants it. Closed rigid loops are left to the solver.
+void place_driven_bodies(Robot& robot) {
+  for (const JointDrive& drive : robot.joint_drives) {
+    if (drive.spec->quantity != DriveQuantity::kPosition) continue;
+    Joint& joint = robot.joints[static_cast<std::size_t>(drive.joint)];
+    joint.q = drive.spec->profile.evaluate(0, true).value;
+    if (joint.child < 0) continue;
+    const Pose moved = joint.displacement(robot.body_pose(joint.parent));
+    for (int b : carried_by(robot, static_cast<std::size_t>(drive.joint))) {
+      RigidBody& body = robot.bodies[static_cast<std::size_t>(b)];
+      const Pose X = moved * body.pose();
+      body.R = orthonormalized(X.R);
+      body.p = X.p;
+    }
+  }
+  for (RigidBody& body : robot.bodies)
+    body.start_tracks(Vec3::Zero(), Vec3::Zero());
+}
+
 RobotScale choose_scale(const Robot& robot) {
   RobotScale scale;
   double length = 0, force = 0, weight = 0;
@@ -246,13 +281,12 @@ Robot build_robot(const Scene& scene) {
   if (scene.effects.has(Effect::kGravity)) robot.gravity = scene.gravity;
   const Welds welds(scene);
   add_bodies(robot, welds, held_groups(scene, welds));
-  for (RigidBody& body : robot.bodies) {
+  for (RigidBody& body : robot.bodies)
     compose(robot, body);
-    body.start_tracks(Vec3::Zero(), Vec3::Zero());
-  }
   add_joints(robot);
-  add_rods(robot);
   add_actions(robot);
+  place_driven_bodies(robot);
+  add_rods(robot);
   robot.scale = choose_scale(robot);
   return robot;
 }

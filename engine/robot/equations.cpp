@@ -107,6 +107,11 @@ void Equations::set_softness(double softness) {
   prepare_rods();
 }
 
+void Equations::break_symmetry() {
+  for (RobotRod& rod : robot_.rods)
+    if (rod.tip_held) rod.model->bow(robot_.port(rod.base), robot_.port(rod.tip));
+}
+
 bool Equations::wants_soft_start() const {
   return std::any_of(robot_.rods.begin(), robot_.rods.end(),
                      [](const RobotRod& rod) { return rod.tip_held; });

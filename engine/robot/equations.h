@@ -53,6 +53,9 @@ class Equations final : public Problem {
 
   ProblemResidual evaluate() override;
   bool find_direction(double mu) override;
+
+  double predicted_merit() const override { return predicted_merit_; }
+
   void keep() override;
   void move(double alpha) override;
 
@@ -67,6 +70,9 @@ class Equations final : public Problem {
   /// step.
   void set_softness(double softness) override;
   bool wants_soft_start() const override;
+  /// Rods longer than the distance of their ends start bowed, out of the symmetry of a straight
+  /// column.
+  void break_symmetry() override;
   void restart() override;
   std::string worst_row() const override;
 
@@ -116,6 +122,7 @@ class Equations final : public Problem {
   void assemble_bodies();
   void assemble_joints();
   bool solve(double mu);
+  bool solve_least_motion();
   void distribute();
   VecX column_units() const;
   VecX row_units() const;
@@ -153,6 +160,7 @@ class Equations final : public Problem {
   std::vector<int> joint_offset_;
   MatX J_;
   VecX r_, x_;
+  double predicted_merit_ = 0;
   double growth_ = 0;
   long factorizations_ = 0;
 

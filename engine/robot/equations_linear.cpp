@@ -2,6 +2,8 @@
 // The linear side: condensed rods, global system, directions. Rows are J x + r = 0 with x in the
 // units of column_units() and rows in those of row_units(), so that pivoting compares like with
 // like.
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "engine/robot/equations.h"
@@ -12,6 +14,9 @@ namespace {
 // Below this ratio of pivots T is treated as singular: it then holds no stiffness in some
 // direction.
 constexpr double kSingularPivot = 1e-10;
+
+// Likewise for the global system, and how well its rows must then be met.
+constexpr double kSingularSystem = 1e-13, kConsistent = 1e-6;
 
 }  // namespace
 
@@ -170,8 +175,19 @@ VecX Equations::row_units() const {
   return u;
 }
 
+// Something moves without resistance, like a rod that can spin between two balls. If the rows can
+// be met all the same, the smallest motion that does so is as good as any.
+bool Equations::solve_least_motion() {
+  Eigen::CompleteOrthogonalDecomposition<MatX> qr;
+  qr.setThreshold(kSingularSystem);
+  qr.compute(J_);
+  x_ = -qr.solve(r_);
+  return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm();
+}
+
 bool Equations::solve(double mu) {
   x_.setZero(size_);
+  predicted_merit_ = 0;
   if (size_ == 0) return true;
   const VecX columns = column_units(), rows = row_units();
   J_ = rows.cwiseInverse().asDiagonal() * J_ * columns.asDiagonal();
@@ -179,13 +195,18 @@ bool Equations::solve(double mu) {
   if (mu == 0) {
     const Eigen::PartialPivLU<MatX> lu(J_);
     const VecX pivots = lu.matrixLU().diagonal().cwiseAbs();
-    if (!(pivots.minCoeff() > 1e-16 * pivots.maxCoeff())) return false;
-    x_ = -lu.solve(r_);
+    if (pivots.minCoeff() > kSingularSystem * pivots.maxCoeff()) {
+      x_ = -lu.solve(r_);
+    } else if (!solve_least_motion()) {
+      return false;
+    }
   } else {
     MatX N = J_.transpose() * J_;
     const double floor = 1e-8 * N.diagonal().maxCoeff();
     N.diagonal() += mu * N.diagonal().cwiseMax(floor);
     x_ = -N.ldlt().solve(J_.transpose() * r_);
+    // rows that were eliminated vanish in the linear model
+    predicted_merit_ = 0.5 * (J_ * x_ + r_).squaredNorm();
   }
   x_ = columns.asDiagonal() * x_;
   return x_.allFinite();

@@ -35,6 +35,10 @@ Pose Joint::parent_frame(const Pose& X_W_parent) const {
   return J;
 }
 
+Pose Joint::displacement(const Pose& X_W_parent) const {
+  return parent_frame(X_W_parent) * (X_W_parent * X_PJ_).inverse();
+}
+
 double Joint::axial_effort(const Pose& X_W_parent) const {
   const Vec3 a = parent_frame(X_W_parent).R * axis_;
   return freedom == Freedom::kPrismatic ? a.dot(lambda.tail<3>()) : a.dot(lambda.head<3>());

@@ -67,6 +67,9 @@ class Joint {
   /// Component of lambda along the freedom, i.e. what drives it, and the axis in the world.
   double axial_effort(const Pose& X_W_parent) const;
 
+  /// World motion that takes the child from q = 0 to the present q.
+  Pose displacement(const Pose& X_W_parent) const;
+
   /// What spring and damper take of that at rate q_t.
   double passive_effort(double q_t) const {
     return spec->spring_stiffness * (q - spec->spring_reference) + spec->damping * q_t;

@@ -97,6 +97,8 @@ class RodModel {
   /// fraction of it open.
   virtual void capture_gap(const Port& base, const Port& tip) = 0;
   virtual void hold_gap(double fraction) = 0;
+  /// A guess for a rod longer than its chord: a single bow between its ends.
+  virtual void bow(const Port& base, const Port& tip) = 0;
   virtual void mark_positions() = 0;  ///< origin of the relaxation drag
 
   /// Coordinates that the time scheme integrates; fill_tracks() writes the current stage's values.

@@ -84,7 +84,8 @@ void ShootingRod::set_straight(const Pose& X_WBase) {
   starts_.assign(1, state);
   segment_first_ = {0, static_cast<std::size_t>(cells_)};
   for (CellStage& stage : stages_) {
-    stage = CellStage{};
+    std::fill_n(stage.w, 3, 0.0);
+    std::fill_n(stage.v, 2, 0.0);
     stage.v[2] = 1;
   }
   for (std::size_t k = 0; k < nodes_.size(); ++k) {

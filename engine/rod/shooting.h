@@ -56,6 +56,7 @@ class ShootingRod final : public RodModel {
   Vec6 wrench_on_tip(const Port& tip) const override;
   void capture_gap(const Port& base, const Port& tip) override;
   void hold_gap(double fraction) override;
+  void bow(const Port& base, const Port& tip) override;
   void mark_positions() override;
   std::vector<Track*> tracks() override;
   void fill_tracks() override;

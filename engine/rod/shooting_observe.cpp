@@ -2,6 +2,8 @@
 // What a shooting rod shows to time schemes, predictors and observers.
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 
 #include "engine/math/so3.h"
 #include "engine/rod/shooting.h"
@@ -36,6 +38,27 @@ void ShootingRod::capture_gap(const Port& base, const Port& tip) {
 void ShootingRod::hold_gap(double fraction) {
   base_gap_ = fraction * base_gap_start_;
   tip_gap_ = fraction * tip_gap_start_;
+}
+
+// The buckled clamped column, theta(s) = A sin(2 pi s / L) about the weaker axis, has the chord L
+// J_0(A), and J_0(A) = 1 - A²/4 + ...; where the base's joint can turn, the chord is laid towards
+// the tip.
+void ShootingRod::bow(const Port& base, const Port& tip) {
+  const Vec3 chord = tip.p - base.p;
+  const double ratio = chord.norm() / forcing_.length;
+  if (ratio > 0.999) return;
+  Mat3 R = base.R;
+  if (!base_.fixed() && ratio > 1e-6)
+    R = Quat::FromTwoVectors(Vec3(R.col(2)), chord).toRotationMatrix() * R;
+  set_straight({R, base.p});
+  const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
+  const int axis = section_.K_bt.x() <= section_.K_bt.y() ? 0 : 1;
+  const auto S = static_cast<std::size_t>(table_->stages);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / S;
+    const double s = grid_[cell] + (grid_[cell + 1] - grid_[cell]) * table_->c[j % S];
+    stages_[j].w[axis] = A * k / forcing_.length * std::cos(k * s);
+  }
 }
 
 void ShootingRod::mark_positions() {

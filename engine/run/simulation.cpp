@@ -151,6 +151,7 @@ struct Simulation::Parts {
     const bool found = find_equilibrium();
     equations.hold_bodies(false);
     equations.set_loads(true);
+    equations.set_instant(t, true, StageRates{});
     if (!found) failure = "the rods cannot be assembled: " + failure;
     return found;
   }

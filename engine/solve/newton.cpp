@@ -168,13 +168,17 @@ SolveReport levenberg_marquardt(Problem& problem, const SolveOptions& options) {
       trial = problem.evaluate();
     }
     if (found && trial.finite && trial.merit < r.merit) {
-      const double gain = 1 - trial.merit / r.merit;
+      const double promised = r.merit - problem.predicted_merit();
+      const double gain = promised > 0 ? (r.merit - trial.merit) / promised : 1;
       mu *= std::max(1. / 10, 1 - std::pow(2 * gain - 1, 3));
       growth = 2;
       r = trial;
     } else {
-      problem.move(0);
-      r = problem.evaluate();
+      // without a direction nothing was moved, and there is nothing to move along
+      if (found) {
+        problem.move(0);
+        r = problem.evaluate();
+      }
       mu *= growth;
       growth *= 2;
       if (mu > 1e12) return finish(report, problem, before, r, SolveStatus::kStalled);
@@ -299,16 +303,25 @@ void soft_start(Problem& problem, SolveReport& total) {
 }  // namespace
 
 SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
-  using Rung = SolveReport (*)(Problem&, const SolveOptions&);
-  const Rung rungs[] = {newton, levenberg_marquardt, continuation, relaxation};
+  struct Rung {
+    SolveReport (*solve)(Problem&, const SolveOptions&);
+    bool soft, bowed;
+  };
+
+  const Rung rungs[] = {{newton, true, false},
+                        {newton, false, true},
+                        {levenberg_marquardt, true, false},
+                        {continuation, false, false},
+                        {relaxation, false, false}};
   SolveReport total;
   const ProblemResidual first = problem.evaluate();
   total.initial_residual = first.largest;
-  for (const Rung rung : rungs) {
-    const bool from_soft = rung == newton || rung == levenberg_marquardt;
-    if (from_soft && problem.wants_soft_start() && first.largest > options.tolerance)
-      soft_start(problem, total);
-    const SolveReport part = rung(problem, options);
+  const bool gaping = problem.wants_soft_start() && first.largest > options.tolerance;
+  for (const Rung& rung : rungs) {
+    if (rung.bowed && !gaping) continue;
+    if (rung.bowed) problem.break_symmetry();
+    if (rung.soft && gaping) soft_start(problem, total);
+    const SolveReport part = rung.solve(problem, options);
     add_counts(total, part);
     total.stage = part.stage;
     if (part.converged()) return total;

@@ -34,7 +34,8 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options);
 
 /// newton, levenberg_marquardt, continuation, relaxation, in that order; the first that converges.
 /// Where parts must be brought together, newton and levenberg_marquardt begin from a rough solution
-/// with soft rods, the others from the scene's own start.
+/// with soft rods, newton a second time with rods bowed; the others begin from the scene's own
+/// start.
 SolveReport solve_statics(Problem& problem, const SolveOptions& options);
 
 }  // namespace cprsim

@@ -25,6 +25,9 @@ class Problem {
   /// finite.
   virtual bool find_direction(double mu) = 0;
 
+  /// What the merit would be at the end of the last direction, were the rows linear: 0 for mu = 0.
+  virtual double predicted_merit() const = 0;
+
   virtual void keep() = 0;              ///< remembers the unknowns
   virtual void move(double alpha) = 0;  ///< remembered unknowns plus alpha times the direction
 
@@ -40,6 +43,8 @@ class Problem {
   /// problem itself.
   virtual void set_softness(double softness) = 0;
   virtual bool wants_soft_start() const = 0;  ///< parts must first be brought together
+  /// Leaves a start from which symmetry keeps every step.
+  virtual void break_symmetry() = 0;
   /// Back to the unknowns the scene starts from.
   virtual void restart() = 0;
 

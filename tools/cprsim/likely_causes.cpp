@@ -37,7 +37,8 @@ void blame_jumps(const Scene& scene, double time, double step, Causes& causes) {
 }
 
 void blame_resolution(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
-  // Gauss collocation keeps growing and decaying solutions apart on any grid; explicit tables do not
+  // Gauss collocation keeps growing and decaying solutions apart on any grid; explicit tables do
+  // not
   const bool explicit_table = facts.integrator == "rk4" || facts.integrator == "euler";
   if (!scene.solver.points || !explicit_table) return;
   for (const RodFacts& rod : facts.rods) {

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/cprsim/run_report.h"
 
@@ -63,7 +64,9 @@ std::string energy_line(const Scene& scene, const RunReport& report) {
     return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity\n",
                        extremes.energy().elastic, extremes.energy().gravity);
   }
-  if (extremes.exchanged() <= 0) return "  energy     nothing moved\n";
+  // an equilibrium that stays one exchanges round-off
+  const double stored = std::abs(extremes.energy().elastic) + std::abs(extremes.energy().gravity);
+  if (extremes.exchanged() <= 1e-12 * stored) return "  energy     nothing moved\n";
   const char* of = extremes.exchanged() == extremes.largest_work()      ? "work done"
                    : extremes.exchanged() == extremes.largest_kinetic() ? "largest kinetic energy"
                                                                         : "energy dissipated";
