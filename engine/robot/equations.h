@@ -124,6 +124,7 @@ class Equations final : public Problem {
   bool solve(double mu);
   bool solve_least_motion();
   void distribute();
+  double force_unit(int body) const;
   VecX column_units() const;
   VecX row_units() const;
 

@@ -150,17 +150,26 @@ void Equations::assemble() {
   assemble_joints();
 }
 
+// Force that moves a body by the unit of length: rods' stiffness, or its own inertia over the step.
+double Equations::force_unit(int body) const {
+  if (body < 0) return robot_.scale.force;
+  const double inertia =
+      robot_.bodies[static_cast<std::size_t>(body)].mass * rates_.c_v * rates_.c_w;
+  return std::max(robot_.scale.force, inertia * robot_.scale.length);
+}
+
 VecX Equations::column_units() const {
   VecX u = VecX::Ones(size_);
-  const RobotScale& s = robot_.scale;
+  const double length = robot_.scale.length;
   for (Eigen::Index b = 0; b < body_unknowns_; b += 6)
-    u.segment<3>(b + 3).setConstant(s.length);
+    u.segment<3>(b + 3).setConstant(length);
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    const Joint& joint = robot_.joints[j];
     const Eigen::Index at = joint_offset_[j];
-    u.segment<3>(at).setConstant(s.moment());
-    u.segment<3>(at + 3).setConstant(s.force);
-    if (robot_.joints[j].q_unknown() && robot_.joints[j].freedom == Joint::Freedom::kPrismatic)
-      u[at + 6] = s.length;
+    const double force = std::max(force_unit(joint.parent), force_unit(joint.child));
+    u.segment<3>(at).setConstant(force * length);
+    u.segment<3>(at + 3).setConstant(force);
+    if (joint.q_unknown() && joint.freedom == Joint::Freedom::kPrismatic) u[at + 6] = length;
   }
   return u;
 }
@@ -169,8 +178,16 @@ VecX Equations::row_units() const {
   VecX u = VecX::Ones(size_);
   if (bodies_held_) return u;
   for (Eigen::Index b = 0; b < body_unknowns_; b += 6) {
-    u.segment<3>(b).setConstant(robot_.scale.moment());
-    u.segment<3>(b + 3).setConstant(robot_.scale.force);
+    const double force = force_unit(static_cast<int>(b / 6));
+    u.segment<3>(b).setConstant(force * robot_.scale.length);
+    u.segment<3>(b + 3).setConstant(force);
+  }
+  // effort rows are in units of the robot's force; their multiplier's column may be larger
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    const Joint& joint = robot_.joints[j];
+    if (!joint.q_unknown()) continue;
+    const double force = std::max(force_unit(joint.parent), force_unit(joint.child));
+    u[joint_offset_[j] + 6] = force / robot_.scale.force;
   }
   return u;
 }

@@ -9,6 +9,7 @@
 
 #include "engine/robot/equations.h"
 #include "engine/robot/free_bodies.h"
+#include "engine/run/continuous_drives.h"
 #include "engine/run/facts.h"
 #include "engine/run/ledger.h"
 #include "engine/run/marcher.h"
@@ -86,7 +87,7 @@ struct Simulation::Parts {
   Snapshot now, before;
 
   Parts(Scene s, std::unique_ptr<FreeBodies> free)
-      : scene(std::move(s)),
+      : scene(with_continuous_drives(std::move(s))),
         free_bodies(std::move(free)),
         robot(build_robot(scene)),
         equations(robot, scene.solver.residual_tolerance.value_or(1e-9)),
