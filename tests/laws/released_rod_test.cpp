@@ -1,38 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rod that other programs were timed on: 0.4 m of 2 mm steel bent by 1 N and its weight, let go
-// at t = 0, Kelvin- Voigt damping of 1 ms on every strain. Tip before the release and 1 s later
-// from an independent solution; that it counts rotary inertia shows in the sixth digit.
-#include <gtest/gtest.h>
+// The released rod against an independent solution, and a thinner one at every step.
+#include "tests/support/released_rod.h"
 
-#include "tests/support/robots.h"
+#include <gtest/gtest.h>
 
 namespace cprsim {
 namespace {
 
-const Vec3 kHeldTip(-0.1263366876, 0, 0.3752363348),
-    kTipAfterOneSecond(-0.003583027, 0, 0.399981784);
-
 Scene released_rod(SchemeKind scheme, double step) {
-  Scene scene;
-  switch_on(scene, {Effect::kGravity, Effect::kExtension, Effect::kShear, Effect::kRotaryInertia,
-                    Effect::kDamping});
-  scene.gravity = {-9.81, 0, 0};
-  scene.rods.push_back(steel_rod(0.4, 1e-3));
-  damp(scene.rods[0], 1e-3);
-  add_load(scene, 1, {-1, 0, 0}, Vec3::Zero(), true);
+  Scene scene = released_rod_scene();
   scene.solver.points = 8;
   scene.solver.scheme = scheme;
   scene.solver.step = step;
-  scene.simulation.mode = Mode::kDynamic;
-  scene.simulation.initial_static = true;
-  scene.simulation.duration = 1;
   return scene;
 }
 
 TEST(ReleasedRod, HangsWhereTheReferenceHangs) {
   Simulation simulation(released_rod(SchemeKind::kEsdirk43, 1e-3));
   simulation.start();
-  EXPECT_LT((simulation.now().rods[0].points.back().position - kHeldTip).norm(), 2e-10);
+  EXPECT_LT((simulation.now().rods[0].points.back().position - kReleasedTipHeld).norm(), 2e-10);
 }
 
 TEST(ReleasedRod, IsWhereTheReferenceIsAfterASecond) {
@@ -40,7 +26,7 @@ TEST(ReleasedRod, IsWhereTheReferenceIsAfterASecond) {
   const Snapshot end = run_to_end(simulation);
   ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
   // 1e-6 m is 2.5e-6 of the length; the step's own error here is 3e-7 m
-  EXPECT_LT((end.rods[0].points.back().position - kTipAfterOneSecond).norm(), 1e-6);
+  EXPECT_LT((end.rods[0].points.back().position - kReleasedTipAfterOneSecond).norm(), 1e-6);
 }
 
 struct StepCase {
@@ -55,7 +41,7 @@ TEST_P(ReleasedRodOrder, SurvivesTheRelease) {
     Simulation simulation(released_rod(GetParam().scheme, step));
     const Snapshot end = run_to_end(simulation);
     EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-    return (end.rods[0].points.back().position - kTipAfterOneSecond).norm();
+    return (end.rods[0].points.back().position - kReleasedTipAfterOneSecond).norm();
   };
   const double observed = std::log2(error(1e-3) / error(5e-4));
   EXPECT_GT(observed, GetParam().order);
