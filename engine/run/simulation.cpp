@@ -26,12 +26,18 @@ double seconds_since(Clock::time_point start) {
 
 // A static solve has one point to get right; more iterations than a time step may have.
 SolveOptions static_options(const SolverSpec& spec) {
-  return {spec.residual_tolerance.value_or(1e-9), std::max(40, spec.max_iterations.value_or(0)),
-          1e30};
+  SolveOptions options;
+  options.tolerance = spec.residual_tolerance.value_or(options.tolerance);
+  options.max_iterations = std::max(40, spec.max_iterations.value_or(0));
+  return options;
 }
 
 SolveOptions step_options(const SolverSpec& spec) {
-  return {spec.residual_tolerance.value_or(1e-9), spec.max_iterations.value_or(15), 1e30};
+  SolveOptions options;
+  options.tolerance = spec.residual_tolerance.value_or(options.tolerance);
+  options.max_iterations = spec.max_iterations.value_or(15);
+  options.polish = true;
+  return options;
 }
 
 bool embedded(SchemeKind kind) {

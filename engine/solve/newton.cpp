@@ -90,6 +90,21 @@ Moved newton_step(Problem& problem, ProblemResidual& r) {
   return backtrack(problem, r, full) ? Moved::kOnce : Moved::kNo;
 }
 
+void polish(Problem& problem, const SolveOptions& options, SolveReport& report,
+            ProblemResidual& r) {
+  if (!problem.find_direction(0)) return;
+  ++report.iterations;
+  problem.keep();
+  problem.move(1);
+  const ProblemResidual trial = problem.evaluate();
+  if (trial.finite && trial.largest <= options.tolerance) {
+    r = trial;
+    return;
+  }
+  problem.move(0);
+  r = problem.evaluate();
+}
+
 }  // namespace
 
 const char* to_string(SolveStatus status) {
@@ -130,8 +145,10 @@ SolveReport newton(Problem& problem, const SolveOptions& options) {
   report.history.push_back(r.largest);
   while (true) {
     if (!r.finite) return finish(report, problem, before, r, SolveStatus::kNotFinite);
-    if (r.largest <= options.tolerance)
+    if (r.largest <= options.tolerance) {
+      if (options.polish && report.iterations == 0) polish(problem, options, report, r);
       return finish(report, problem, before, r, SolveStatus::kConverged);
+    }
     if (report.iterations >= options.max_iterations || r.merit > options.max_merit)
       return finish(report, problem, before, r, SolveStatus::kIterationLimit);
     if (!problem.find_direction(0))

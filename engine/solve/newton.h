@@ -12,6 +12,9 @@ struct SolveOptions {
   int max_iterations = 30;  ///< per call of newton() or levenberg_marquardt()
   double max_merit =
       1e30;  ///< newton() gives up at once above this (a trial step that is hopeless)
+  /// One full step even from a guess that meets the tolerance already, kept if it still does: in
+  /// time steps the error of accepted guesses would add up.
+  bool polish = false;
 };
 
 /// Newton's method. A full step that lowers the merit is taken. One that raises it is given a
