@@ -272,32 +272,40 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
   total.stage = SolveStage::kRelaxation;
   SolveOptions inner = options;
   inner.max_iterations = 12;
-  // assembly gaps close first, under strong drag, then the drag falls with the residual
+  inner.tolerance = 1e-6;
+  // assembly gaps close first, under strong drag; then the drag follows the residual, down as it
+  // falls and up as it grows, which is what leads away from an unstable equilibrium
   constexpr int kSteps = 400;
-  double drag = 10, fraction = 0;
+  constexpr double kNoDrag = 1e-3;
+  double drag = 10, fraction = 0, last_residual = 0;
   for (int k = 0; k < kSteps; ++k) {
     const double target = std::min(1.0, fraction + 0.1);
     problem.set_fraction(target);
     problem.set_relaxation(drag);
-    inner.tolerance = 1e-6;
     const SolveReport part = newton(problem, inner);
     add_counts(total, part);
-    if (part.converged()) {
-      fraction = target;
-      drag *= fraction < 1 ? 1.0 : part.iterations <= 4 ? 0.4 : 0.8;
-    } else {
+    if (!part.converged()) {
       drag *= 8;
       if (drag > 1e9) break;
       continue;
     }
-    if (fraction < 1 || drag > 1e-3) continue;
+    fraction = target;
+    if (fraction < 1) continue;
     problem.set_relaxation(0);
+    const double residual = problem.evaluate().largest;
+    if (last_residual > 0) drag *= std::clamp(residual / last_residual, 0.25, 2.0);
+    const bool falling = residual < last_residual;
+    last_residual = residual;
+    const bool there = residual <= 10 * inner.tolerance || (falling && drag <= kNoDrag);
+    if (!there) continue;
     const SolveReport last = newton(problem, options);
     add_counts(total, last);
     if (last.converged()) return total;
-    drag = 1e-1;
+    drag = 100 * kNoDrag;
   }
   problem.set_relaxation(0);
+  total.residual = problem.evaluate().largest;
+  total.worst_row = problem.worst_row();
   if (total.converged()) total.status = SolveStatus::kIterationLimit;
   return total;
 }
