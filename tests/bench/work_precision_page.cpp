@@ -184,7 +184,7 @@ void write_failures(const Study& study, std::ofstream& page) {
   for (const Outcome& out : study.outcomes) {
     if (!out.failure.empty()) ++failed;
     if (out.setting.step == 0) continue;
-    drifts = drifts || out.iterations < 0.95 * static_cast<double>(out.steps);
+    drifts = drifts || out.iterations < out.steps - out.steps / 20;
     smallest = std::min(smallest, out.setting.step);
     largest = std::max(largest, out.setting.step);
   }
