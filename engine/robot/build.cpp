@@ -44,12 +44,12 @@ class Welds {
   std::vector<std::size_t> parent_;
 };
 
-// A group of links is part of the Newton system if a joint other than a weld, or a rod, holds it.
+// A group of links is part of the Newton system if a joint or a rod holds any of it: links welded to
+// each other and to nothing else are one body of it, not several free ones.
 std::vector<char> held_groups(const Scene& scene, const Welds& welds) {
   std::vector<char> held(scene.bodies.size() + 1, 0);
   auto hold = [&](int body) { held[welds.group(welds.element(body))] = 1; };
   for (const JointSpec& joint : scene.joints) {
-    if (joint.kind == JointKind::kFixed) continue;
     hold(joint.parent);
     hold(joint.child);
   }
@@ -264,15 +264,6 @@ PointLoad load_at(const LoadSpec& load, double t, bool before) {
   const double f = load.has_profile ? load.profile.evaluate(t, before).value : 1.0;
   return {load.rod_s, f * (load.R_expressed * load.force), f * (load.R_expressed * load.torque),
           load.follower};
-}
-
-std::vector<int> free_links(const Scene& scene) {
-  const Welds welds(scene);
-  const std::vector<char> held = held_groups(scene, welds);
-  std::vector<int> free;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (!welds.grounded(i) && !held[welds.group(i)]) free.push_back(static_cast<int>(i));
-  return free;
 }
 
 Robot build_robot(const Scene& scene) {

@@ -89,9 +89,6 @@ struct Robot {
 /// limit at a jump.
 PointLoad load_at(const LoadSpec& load, double t, bool before);
 
-/// Links that Bullet (or somebody) else integrates: movable, no joint, no rod.
-std::vector<int> free_links(const Scene& scene);
-
 /// @throws std::invalid_argument for what this version cannot do.
 Robot build_robot(const Scene& scene);
 

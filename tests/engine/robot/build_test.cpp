@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "collision/bullet_world.h"
 #include "engine/math/so3.h"
 #include "engine/robot/robot.h"
 #include "tests/engine/robot/sample_scenes.h"
@@ -97,27 +98,33 @@ TEST(Robot, WhatIsWeldedToTheGroundIsGround) {
     const Pose tip = scene.bodies[1].X_WB * scene.rods[0].tip.at.X_BF;
     EXPECT_EQ(robot.port(robot.rods[0].tip).p, tip.p);
     EXPECT_FALSE(robot.port(robot.rods[0].tip).moves);
-    EXPECT_TRUE(free_links(scene).empty());
+    EXPECT_TRUE(find_free_bodies(scene).empty());
   }
 }
 
-TEST(Robot, FreeLinksAreThoseThatNothingHolds) {
+// Two rules that must agree: what the Newton system leaves out is what Bullet takes.
+TEST(Robot, LeavesTheLinksFreeThatBulletIntegrates) {
   Scene scene = welded_pair();
-  for (const char* name : {"c", "d", "e", "f"})
+  for (const char* name : {"c", "d", "e", "f", "g"})
     scene.bodies.push_back(sample_body(name, Pose{}, 0.1));
-  weld(scene, 2, 3);  // two links, welded to each other only
+  weld(scene, 2, 3);  // two links welded to each other only are one body
   JointSpec hinge;
   hinge.kind = JointKind::kRevolute;
   hinge.parent = 4;
   hinge.child = kWorld;
   scene.joints.push_back(hinge);
   scene.bodies[5].is_static = true;
-  EXPECT_EQ(free_links(scene), (std::vector<int>{2, 3}));
   const Robot robot = build_robot(scene);
-  EXPECT_EQ(robot.bodies.size(), 2u);
-  EXPECT_EQ(robot.links[2].body, LinkPlace::kFree);
+  EXPECT_EQ(robot.bodies.size(), 3u);
+  EXPECT_GE(robot.links[2].body, 0);
+  EXPECT_EQ(robot.links[2].body, robot.links[3].body);
   EXPECT_GE(robot.links[4].body, 0);
   EXPECT_EQ(robot.links[5].body, LinkPlace::kGround);
+  EXPECT_EQ(robot.links[6].body, LinkPlace::kFree);
+  std::vector<int> free;
+  for (std::size_t i = 0; i < robot.links.size(); ++i)
+    if (robot.links[i].body == LinkPlace::kFree) free.push_back(static_cast<int>(i));
+  EXPECT_EQ(free, find_free_bodies(scene));
 }
 
 TEST(Robot, RefusesJointsItCannotSimulate) {
