@@ -44,8 +44,8 @@ class Welds {
   std::vector<std::size_t> parent_;
 };
 
-// A group of links is part of the Newton system if a joint or a rod holds any of it: links welded to
-// each other and to nothing else are one body of it, not several free ones.
+// A group of links is part of the Newton system if a joint or a rod holds any of it: links welded
+// to each other and to nothing else are one body of it, not several free ones.
 std::vector<char> held_groups(const Scene& scene, const Welds& welds) {
   std::vector<char> held(scene.bodies.size() + 1, 0);
   auto hold = [&](int body) { held[welds.group(welds.element(body))] = 1; };
