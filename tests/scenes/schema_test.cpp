@@ -84,7 +84,7 @@ TEST(Table, ExplainsElements) {
 
 TEST(Grammar, IsTheOneGeneratedFromItsSource) {
   const std::string trang = CPRSIM_TRANG;
-  if (trang.empty()) GTEST_SKIP() << "trang is not installed";
+  if (trang.empty()) FAIL() << "trang is not installed: run tools/install-deps.sh";
   const auto copy =
       std::filesystem::temp_directory_path() / ("cprsim_" + std::to_string(::getpid()) + ".rng");
   ASSERT_EQ(std::system((trang + " '" + kSchema + "cprsim.rnc' '" + copy.string() + "'").c_str()),
@@ -96,7 +96,7 @@ TEST(Grammar, IsTheOneGeneratedFromItsSource) {
 
 TEST(Grammar, AcceptsEveryShippedScene) {
   const std::string xmllint = CPRSIM_XMLLINT;
-  if (xmllint.empty()) GTEST_SKIP() << "xmllint is not installed";
+  if (xmllint.empty()) FAIL() << "xmllint is not installed: run tools/install-deps.sh";
   for (const auto& path : shipped_scenes())
     EXPECT_EQ(std::system((xmllint + " --noout --relaxng '" + kSchema + "cprsim.rng' '" +
                            path.string() + "' 2>/dev/null")
