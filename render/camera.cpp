@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/so3.h"
+
 namespace cprsim {
 
 namespace {
@@ -74,7 +76,7 @@ View make_view(const CameraSpec& camera, const Snapshot& now, double film_time, 
   }
   view.eye = camera.eye;
   if (camera.orbit_rate != 0) {
-    const Eigen::AngleAxisd turn(camera.orbit_rate * film_time, up);
+    const Mat3 turn = exp_so3(camera.orbit_rate * film_time * up);
     view.eye = target + turn * (camera.eye - target);
   }
   Vec3 forward = target - view.eye;

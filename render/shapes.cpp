@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/so3.h"
+
 namespace cprsim {
 
 namespace {
@@ -130,7 +132,7 @@ TriMesh make_box(const Vec3& size, std::array<std::uint8_t, 4> color) {
 TriMesh make_plane(const ShapeSpec& shape, std::array<std::uint8_t, 4> color) {
   TriMesh mesh;
   const Vec3 n = shape.normal.norm() > 0 ? Vec3(shape.normal.normalized()) : Vec3::UnitZ();
-  const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), n);
+  const Mat3 turn = rotation_between(Vec3::UnitZ(), n);
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
     add_vertex(mesh, turn * Vec3(0.5 * x * shape.size.x(), 0.5 * y * shape.size.y(), 0), n, color);
   }

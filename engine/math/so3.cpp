@@ -85,6 +85,28 @@ Mat3 right_jacobian_derivative(const Vec3& theta, const Vec3& w) {
          k.B_slope * ttw * theta.transpose();
 }
 
+// R = I + hat(c) + hat(c)² / (1 + a . b), c = a × b; where the directions are nearly opposite, half
+// a turn about their common normal takes a to -a, and the rest is short.
+Mat3 rotation_between(const Vec3& from, const Vec3& to) {
+  const Vec3 a = from.normalized(), b = to.normalized();
+  const double cosine = a.dot(b);
+  if (cosine > -0.9) {
+    const Mat3 C = hat(a.cross(b));
+    return Mat3::Identity() + C + C * C / (1 + cosine);
+  }
+  Vec3 across = a.cross(a.cross(b));  // across a, in the plane of both
+  if (across.norm() < 1e-12) {
+    across.setZero();
+    Eigen::Index weakest = 0;
+    a.cwiseAbs().minCoeff(&weakest);
+    across[weakest] = 1;
+    across -= across.dot(a) * a;
+  }
+  const Vec3 axis = a.cross(across).normalized();
+  const Mat3 half = 2 * axis * axis.transpose() - Mat3::Identity();
+  return rotation_between(-a, b) * half;
+}
+
 Mat3 orthonormalized(const Mat3& R) {
   return Quat(R).normalized().toRotationMatrix();
 }

@@ -29,6 +29,10 @@ Mat3 right_jacobian_inverse(const Vec3& theta);
 /// d(J_r(theta) w)/dtheta for constant w.
 Mat3 right_jacobian_derivative(const Vec3& theta, const Vec3& w);
 
+/// The shortest turn that takes the direction `from` to the direction `to`; half a turn about some
+/// axis across where they are opposite. Neither needs unit length.
+Mat3 rotation_between(const Vec3& from, const Vec3& to);
+
 /// The rotation matrix nearest to one that has drifted by round-off.
 Mat3 orthonormalized(const Mat3& R);
 

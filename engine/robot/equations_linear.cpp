@@ -2,10 +2,11 @@
 // The linear side: condensed rods, global system, directions. Rows are J x + r = 0 with x in the
 // units of column_units() and rows in those of row_units(), so that pivoting compares like with
 // like.
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/linear_solve.h"
 #include "engine/robot/equations.h"
 
 namespace cprsim {
@@ -195,10 +196,7 @@ VecX Equations::row_units() const {
 // Something moves without resistance, like a rod that can spin between two balls. If the rows can
 // be met all the same, the smallest motion that does so is as good as any.
 bool Equations::solve_least_motion() {
-  Eigen::CompleteOrthogonalDecomposition<MatX> qr;
-  qr.setThreshold(kSingularSystem);
-  qr.compute(J_);
-  x_ = -qr.solve(r_);
+  x_ = -least_norm_solution(J_, r_, kSingularSystem);
   return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm();
 }
 
@@ -210,10 +208,8 @@ bool Equations::solve(double mu) {
   J_ = rows.cwiseInverse().asDiagonal() * J_ * columns.asDiagonal();
   r_ = rows.cwiseInverse().asDiagonal() * r_;
   if (mu == 0) {
-    const Eigen::PartialPivLU<MatX> lu(J_);
-    const VecX pivots = lu.matrixLU().diagonal().cwiseAbs();
-    if (pivots.minCoeff() > kSingularSystem * pivots.maxCoeff()) {
-      x_ = -lu.solve(r_);
+    if (solve_square(J_, r_, kSingularSystem, x_)) {
+      x_ = -x_;
     } else if (!solve_least_motion()) {
       return false;
     }
@@ -221,7 +217,7 @@ bool Equations::solve(double mu) {
     MatX N = J_.transpose() * J_;
     const double floor = 1e-8 * N.diagonal().maxCoeff();
     N.diagonal() += mu * N.diagonal().cwiseMax(floor);
-    x_ = -N.ldlt().solve(J_.transpose() * r_);
+    x_ = -solve_symmetric(N, J_.transpose() * r_);
     // rows that were eliminated vanish in the linear model
     predicted_merit_ = 0.5 * (J_ * x_ + r_).squaredNorm();
   }
@@ -270,7 +266,7 @@ bool Equations::follow_bodies(const std::vector<Vec6>& motions) {
       const CondensedRod& c = condensed_[i];
       Vec6 rhs = c.t + c.T_A * body_direction(rod.base.body);
       if (rod.tip_held) rhs += c.T_B * body_direction(rod.tip.body);
-      x_.segment<6>(e.offset) = -c.T.completeOrthogonalDecomposition().solve(rhs);
+      x_.segment<6>(e.offset) = -least_norm_solution(c.T, rhs, kSingularPivot);
     }
   }
   if (regular) distribute();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The variational sweep and the stable elimination of everything between a rod's ends.
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
 #include "engine/rod/shooting.h"
 
@@ -55,16 +55,18 @@ void ShootingRod::start_columns(const Port& base, double* Y0) const {
   }
   const EndRows rows = base_.rows(start, base, scale_);
   const Vec12 d = state_units(scale_);
-  const Mat12x6 Bt = (rows.by_state * d.asDiagonal()).transpose();
-  Eigen::HouseholderQR<Mat12x6> qr(Bt);
-  Mat12 Q = qr.householderQ();
-  const Mat6 Rt = Mat6(qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>()).transpose();
-  const auto lower = Rt.triangularView<Eigen::Lower>();
+  const TallQr qr((rows.by_state * d.asDiagonal()).transpose());
+  const Mat6 lower = qr.R.transpose();
+  const Mat12x6 Q1 = d.asDiagonal() * qr.Q1, Q2 = d.asDiagonal() * qr.Q2;
   // B y + by_body zeta + value = 0  =>  y = Q2 z - Q1 R^-T (by_body zeta + value)
-  Y.leftCols<6>() = d.asDiagonal() * Q.rightCols<6>();
-  Y.col(affine) = -(d.asDiagonal() * (Q.leftCols<6>() * lower.solve(rows.value - base_gap_)));
-  if (columns_ == kWide)
-    Y.middleCols<6>(6) = -(d.asDiagonal() * (Q.leftCols<6>() * lower.solve(rows.by_body)));
+  Y.leftCols<6>() = Q2;
+  Vec6 value = rows.value - base_gap_;
+  lower.triangularView<Eigen::Lower>().solveInPlace(value);
+  Y.col(affine) = -(Q1 * value);
+  if (columns_ == kNarrow) return;
+  Mat6 by_body = rows.by_body;
+  lower.triangularView<Eigen::Lower>().solveInPlace(by_body);
+  Y.middleCols<6>(6) = -(Q1 * by_body);
 }
 
 // A follower load turns with its section: d(R F) = phi × R F.
@@ -95,22 +97,25 @@ void ShootingRod::orthonormalize(std::size_t segment, const NodeState& reached, 
   for (int c = 0; c < columns_; ++c)
     Y.col(c).head<3>() = (back * Y.col(c).head<3>()).eval();
   const Vec12 d = state_units(port_scale_);
-  Y = d.cwiseInverse().asDiagonal() * Y;
-  Mat12x6 Y_z = Y.leftCols<6>();
+  const Vec12 per_unit = d.cwiseInverse();
+  const Mat12x6 Y_z = per_unit.asDiagonal() * Mat12x6(Y.leftCols<6>());
   transition_ = std::max(transition_, Y_z.cwiseAbs().maxCoeff());
-  Eigen::HouseholderQR<Mat12x6> qr(Y_z);
-  const Mat12x6 Q = qr.householderQ() * Mat12x6::Identity();
+  const TallQr qr(Y_z);
+  const Mat6x12 Qt = qr.Q1.transpose();
   Recombination& rec = recombinations_[segment];
-  rec.R = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>();
-  rec.g = Q.transpose() * Y.col(affine);
-  Y.col(affine) -= Q * rec.g;
+  rec.R = qr.R;
+  Vec12 y = per_unit.cwiseProduct(Vec12(Y.col(affine)));
+  rec.g = Qt * y;
+  y -= qr.Q1 * rec.g;
+  Y.col(affine) = d.cwiseProduct(y);
   rec.G_A.setZero();
   if (columns_ == kWide) {
-    rec.G_A = Q.transpose() * Y.middleCols<6>(6);
-    Y.middleCols<6>(6) -= Q * rec.G_A;
+    Mat12x6 Y_A = per_unit.asDiagonal() * Mat12x6(Y.middleCols<6>(6));
+    rec.G_A = Qt * Y_A;
+    Y_A -= qr.Q1 * rec.G_A;
+    Y.middleCols<6>(6) = d.asDiagonal() * Y_A;
   }
-  Y.leftCols<6>() = Q;
-  Y = d.asDiagonal() * Y;
+  Y.leftCols<6>() = d.asDiagonal() * qr.Q1;
 }
 
 bool ShootingRod::sweep_columns(const Port& base) {
@@ -158,11 +163,13 @@ void ShootingRod::close_tip(const Port& tip, const double* Y0, CondensedRod& out
   const int affine = affine_column(columns_);
   const NodeState& end = nodes_.back();
   const EndRows rows = tip_.rows(end, tip, scale_);
-  out.T = rows.by_state * Y.leftCols<6>();
-  out.t = rows.value - tip_gap_ + rows.by_state * Y.col(affine);
+  const Mat12x6 Y_z = Y.leftCols<6>(),
+                Y_A = columns_ == kWide ? Mat12x6(Y.middleCols<6>(6)) : Mat12x6(Mat12x6::Zero());
+  const Vec12 y = Y.col(affine);
+  out.T = rows.by_state * Y_z;
+  out.t = rows.value - tip_gap_ + rows.by_state * y;
   out.T_B = rows.by_body;
-  out.T_A.setZero();
-  if (columns_ == kWide) out.T_A = rows.by_state * Y.middleCols<6>(6);
+  out.T_A = rows.by_state * Y_A;
   out.WB_z.setZero();
   out.WB_A.setZero();
   out.WB_B.setZero();
@@ -176,10 +183,10 @@ void ShootingRod::close_tip(const Port& tip, const double* Y0, CondensedRod& out
   W.block<3, 3>(0, 6) = -hat(r);
   W.block<3, 3>(0, 9) = -Mat3::Identity();
   W.block<3, 3>(3, 6) = -Mat3::Identity();
-  out.WB_z = W * Y.leftCols<6>();
-  if (columns_ == kWide) out.WB_A = W * Y.middleCols<6>(6);
+  out.WB_z = W * Y_z;
+  out.WB_A = W * Y_A;
   out.WB_B.block<3, 3>(0, 3) = -hat(n);
-  out.wb = wrench_on_tip(tip) + W * Y.col(affine);
+  out.wb = wrench_on_tip(tip) + W * y;
 }
 
 // The wrench on the base's body needs z at the first segment: back through the recombinations.
@@ -193,9 +200,11 @@ void ShootingRod::close_base(const Port& base, CondensedRod& out) const {
   for (int g = segments() - 2; g >= 0; --g) {
     const Recombination& rec = recombinations_[static_cast<std::size_t>(g)];
     const auto R = rec.R.triangularView<Eigen::Upper>();
-    Z = R.solve(Z).eval();
-    Z_A = R.solve(Z_A - rec.G_A).eval();
-    z0 = R.solve(z0 - rec.g).eval();
+    Z_A -= rec.G_A;
+    z0 -= rec.g;
+    R.solveInPlace(Z);
+    R.solveInPlace(Z_A);
+    R.solveInPlace(z0);
   }
   const ConstColumnsMap Y(segment_start_columns_.front().data(), 12, columns_);
   const NodeState& start = starts_.front();
@@ -206,11 +215,13 @@ void ShootingRod::close_base(const Port& base, CondensedRod& out) const {
   W.block<3, 3>(0, 6) = hat(r);
   W.block<3, 3>(0, 9) = Mat3::Identity();
   W.block<3, 3>(3, 6) = Mat3::Identity();
-  const Eigen::Matrix<double, 6, 6> W_z = W * Y.leftCols<6>();
+  const Mat6 W_z = W * Mat12x6(Y.leftCols<6>());
   out.WA_z = W_z * Z;
-  out.WA_A = W * Y.middleCols<6>(6) + W_z * Z_A;
+  out.WA_A = W * Mat12x6(Y.middleCols<6>(6));
+  out.WA_A += W_z * Z_A;
   out.WA_A.block<3, 3>(0, 3) += hat(n);
-  out.wa = wrench_on_base(base) + W * Y.col(affine_column(columns_)) + W_z * z0;
+  out.wa = wrench_on_base(base) + W * Vec12(Y.col(affine_column(columns_)));
+  out.wa += W_z * z0;
 }
 
 Vec6 ShootingRod::wrench_on_base(const Port& base) const {
@@ -241,7 +252,8 @@ void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
   for (std::size_t g = M; g-- > 0;) {
     if (g + 1 < M) {
       const Recombination& rec = recombinations_[g];
-      z_g = rec.R.triangularView<Eigen::Upper>().solve(z_g - rec.G_A * zeta_A - rec.g).eval();
+      z_g -= rec.G_A * zeta_A + rec.g;
+      rec.R.triangularView<Eigen::Upper>().solveInPlace(z_g);
     }
     weights.head<6>() = z_g;
     if (columns_ == kWide) weights.segment<6>(6) = zeta_A;

@@ -48,8 +48,7 @@ void ShootingRod::bow(const Port& base, const Port& tip) {
   const double ratio = chord.norm() / forcing_.length;
   if (ratio > 0.999) return;
   Mat3 R = base.R;
-  if (!base_.fixed() && ratio > 1e-6)
-    R = Quat::FromTwoVectors(Vec3(R.col(2)), chord).toRotationMatrix() * R;
+  if (!base_.fixed() && ratio > 1e-6) R = rotation_between(R.col(2), chord) * R;
   set_straight({R, base.p});
   const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
   const int axis = section_.K_bt.x() <= section_.K_bt.y() ? 0 : 1;

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/math/so3.h"
+
 namespace cprsim {
 
 namespace {
@@ -102,13 +104,11 @@ std::string format_number(double value) {
 }
 
 Mat3 rotation_from_rpy(double roll, double pitch, double yaw) {
-  return (Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(pitch, Vec3::UnitY()) *
-          Eigen::AngleAxisd(roll, Vec3::UnitX()))
-      .toRotationMatrix();
+  return exp_so3({0, 0, yaw}) * exp_so3({0, pitch, 0}) * exp_so3({roll, 0, 0});
 }
 
 Mat3 rotation_onto(const Vec3& direction) {
-  return Quat::FromTwoVectors(Vec3::UnitZ(), direction).toRotationMatrix();
+  return rotation_between(Vec3::UnitZ(), direction);
 }
 
 }  // namespace cprsim

@@ -95,7 +95,7 @@ TEST(Sources, NameNoMachine) {
   const std::filesystem::path root = CPRSIM_SOURCE_DIR;
   const std::string around = root.parent_path().generic_string();
   for (const std::string& place : {root.generic_string(), std::string(CPRSIM_BINARY_DIR), around}) {
-    if (place.size() < 2) continue;
+    if (place.find('/', 1) == std::string::npos) continue;  // "/tmp" is a word of every machine
     const std::string literal =
         std::regex_replace(place, std::regex(R"([.^$|()\[\]{}*+?\\])"), "\\$&");
     expect_nowhere(std::regex("(^|[\\s\"'(=:])" + literal + "(/|$|[\\s\"'):])"), place);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/so3.h"
+
 namespace cprsim {
 
 namespace {
@@ -43,10 +45,10 @@ Pose platform_pose(double t) {
   const double w = 2 * kPi * 0.5;
   const Vec3 p(0.05 * std::sin(w * t), 0.04 * std::sin(2 * w * t + 0.4),
                0.40 + 0.03 * std::sin(w * t + 1));
-  const Quat tilt = Eigen::AngleAxisd(0.22 * std::sin(w * t + 0.5), Vec3::UnitY()) *
-                    Eigen::AngleAxisd(0.18 * std::cos(w * t), Vec3::UnitX()) *
-                    Eigen::AngleAxisd(0.35 * std::sin(w * t), Vec3::UnitZ());
-  return {tilt.toRotationMatrix(), p};
+  const Mat3 tilt = exp_so3({0, 0.22 * std::sin(w * t + 0.5), 0}) *
+                    exp_so3({0.18 * std::cos(w * t), 0, 0}) *
+                    exp_so3({0, 0, 0.35 * std::sin(w * t)});
+  return {tilt, p};
 }
 
 /// Cubic from a to b with end directions da and db; k-th derivative at u in [0,1].
@@ -67,7 +69,7 @@ RodSample rod_between(const Vec3& a, const Vec3& b, const Vec3& z_b) {
     const Vec3 d1 = cubic(a, da, b, db, point.s, 1), d2 = cubic(a, da, b, db, point.s, 2);
     const Vec3 tangent = d1.normalized(), bending = d1.cross(d2) / std::pow(d1.norm(), 3);
     point.position = cubic(a, da, b, db, point.s, 0);
-    point.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), tangent).toRotationMatrix();
+    point.rotation = rotation_between(Vec3::UnitZ(), tangent);
     point.curvature = point.rotation.transpose() * bending;
     point.moment = kBendingStiffness * bending;
     rod.length += d1.norm() / (kPoints - 1);

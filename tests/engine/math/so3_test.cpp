@@ -37,6 +37,25 @@ TEST(So3, ExpIsTheRotationByItsVector) {
     }
 }
 
+TEST(So3, RotationBetweenIsTheShortestTurn) {
+  const Vec3 a(0.48, -0.6, 0.64);
+  const Vec3 across = a.cross(Vec3(0.3, 0.5, -0.2)).normalized();
+  for (double t : {0., 1e-9, 0.3, 1.5, 2.6, 2.7, 3., kPi - 1e-4, kPi - 1e-9}) {
+    const Vec3 b = std::cos(t) * a + std::sin(t) * across.cross(a);
+    const Mat3 R = rotation_between(2 * a, 0.5 * b);
+    EXPECT_LT((R - eigen_rotation(t, across)).norm(), 1e-14 + 1e-15 / (kPi - t)) << t;
+  }
+}
+
+TEST(So3, RotationBetweenOppositeDirectionsIsHalfATurn) {
+  for (const Vec3& a : directions()) {
+    const Mat3 R = rotation_between(a, -a);
+    EXPECT_LT((R * a + a).norm(), 2 * kRoundOff);
+    EXPECT_LT((R.transpose() * R - Mat3::Identity()).norm(), 4 * kRoundOff);
+    EXPECT_NEAR(R.trace(), -1, 4 * kRoundOff);
+  }
+}
+
 TEST(So3, LogInvertsExp) {
   for (const Vec3& a : directions())
     for (double t : kAngles) {

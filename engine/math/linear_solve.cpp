@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/math/linear_solve.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+
+namespace cprsim {
+
+bool solve_square(const MatX& A, const VecX& b, double smallest_pivot, VecX& x) {
+  const Eigen::PartialPivLU<MatX> lu(A);
+  const VecX pivots = lu.matrixLU().diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > smallest_pivot * pivots.maxCoeff())) return false;
+  x = lu.solve(b);
+  return true;
+}
+
+VecX least_norm_solution(const MatX& A, const VecX& b, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<MatX> qr;
+  qr.setThreshold(threshold);
+  qr.compute(A);
+  return qr.solve(b);
+}
+
+VecX solve_symmetric(const MatX& N, const VecX& b) {
+  return N.ldlt().solve(b);
+}
+
+// Reflections H_k = I - 2 v v^T make A upper triangular; Q = H_0 ... H_5.
+TallQr::TallQr(const Mat12x6& A) {
+  Mat12x6 work = A;
+  Eigen::Matrix<double, 12, 6> v = Mat12x6::Zero();
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    double tail = 0;
+    for (Eigen::Index i = k; i < 12; ++i)
+      tail += work(i, k) * work(i, k);
+    const double length = std::sqrt(tail);
+    for (Eigen::Index i = k; i < 12; ++i)
+      v(i, k) = work(i, k);
+    v(k, k) += std::copysign(length, work(k, k));
+    const double norm = v.col(k).norm();
+    if (norm > 0) v.col(k) /= norm;
+    for (Eigen::Index c = k; c < 6; ++c)
+      work.col(c) -= 2 * v.col(k).dot(work.col(c)) * v.col(k);
+  }
+  R = Mat6::Zero();
+  for (Eigen::Index c = 0; c < 6; ++c)
+    for (Eigen::Index r = 0; r <= c; ++r)
+      R(r, c) = work(r, c);
+  Q1.setIdentity();
+  Q2.setZero();
+  Q2.bottomRows<6>().setIdentity();
+  for (Eigen::Index k = 5; k >= 0; --k)
+    for (Eigen::Index c = 0; c < 6; ++c) {
+      Q1.col(c) -= 2 * v.col(k).dot(Q1.col(c)) * v.col(k);
+      Q2.col(c) -= 2 * v.col(k).dot(Q2.col(c)) * v.col(k);
+    }
+}
+
+}  // namespace cprsim

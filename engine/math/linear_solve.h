@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Dense linear systems. Eigen's decompositions, instantiated once: they are most of what a file
+// that uses them takes to compile.
+#pragma once
+
+#include "engine/math/types.h"
+
+namespace cprsim {
+
+/// Solution of A x = b by LU with partial pivoting, or nothing where the smallest pivot is below
+/// `smallest_pivot` times the largest.
+bool solve_square(const MatX& A, const VecX& b, double smallest_pivot, VecX& x);
+
+/// Of all x with the least |A x - b|, the shortest; columns count as dependent below `threshold`
+/// (relative to the largest pivot of a QR decomposition with column pivoting).
+VecX least_norm_solution(const MatX& A, const VecX& b, double threshold);
+
+/// Solution of N x = b for symmetric N, positive definite or nearly so (LDL^T with pivoting).
+VecX solve_symmetric(const MatX& N, const VecX& b);
+
+/// A (12 × 6) = Q1 R with orthonormal columns Q1 and upper triangular R; the columns of Q2 complete
+/// those of Q1 to a basis. By Householder reflections.
+struct TallQr {
+  using Mat12x6 = Eigen::Matrix<double, 12, 6>;
+  explicit TallQr(const Mat12x6& A);
+  Mat12x6 Q1, Q2;
+  Mat6 R;
+};
+
+}  // namespace cprsim
