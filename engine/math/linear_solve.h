@@ -18,6 +18,22 @@ VecX least_norm_solution(const MatX& A, const VecX& b, double threshold);
 /// Solution of N x = b for symmetric N, positive definite or nearly so (LDL^T with pivoting).
 VecX solve_symmetric(const MatX& N, const VecX& b);
 
+/// Smallest over largest singular value; 0 for an empty matrix.
+double conditioning(const MatX& A);
+
+/// Eigenvalues (ascending) and vectors of K x = lambda M x for symmetric K and positive definite M;
+/// vectors are M-orthonormal columns.
+struct SymmetricModes {
+  VecX values;
+  MatX vectors;
+};
+
+SymmetricModes symmetric_modes(const MatX& K, const MatX& M);
+
+/// Orthonormal columns that span what the rows of C leave free; rows count as dependent below
+/// `threshold`.
+MatX kernel_of(const MatX& C, double threshold);
+
 /// A (12 × 6) = Q1 R with orthonormal columns Q1 and upper triangular R; the columns of Q2 complete
 /// those of Q1 to a basis. By Householder reflections.
 struct TallQr {

@@ -73,6 +73,7 @@ class ShootingRod final : public RodModel {
   void predict(const std::vector<const Unknowns*>& past,
                const std::vector<double>& weights) override;
   RodSample observe() const override;
+  RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
 
