@@ -25,8 +25,24 @@ VecX least_norm_solution(const MatX& A, const VecX& b, double threshold) {
   return qr.solve(b);
 }
 
+MatX least_norm_solutions(const MatX& A, const MatX& B, double threshold) {
+  if (A.rows() == 0) return MatX::Zero(A.cols(), B.cols());
+  Eigen::CompleteOrthogonalDecomposition<MatX> qr;
+  qr.setThreshold(threshold);
+  qr.compute(A);
+  return qr.solve(B);
+}
+
 VecX solve_symmetric(const MatX& N, const VecX& b) {
   return N.ldlt().solve(b);
+}
+
+MatX solve_columns(const MatX& A, const MatX& B) {
+  return A.partialPivLu().solve(B);
+}
+
+bool is_positive_definite(const MatX& A) {
+  return A.llt().info() == Eigen::Success;
 }
 
 double conditioning(const MatX& A) {

@@ -39,12 +39,13 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
   RodVariation out;
   out.K = MatX::Zero(n, n);
   out.M = MatX::Zero(n, n);
-  out.positions.resize(3 * static_cast<Eigen::Index>(field.points.size()), n);
+  out.nodes.resize(6 * static_cast<Eigen::Index>(field.cells.size() + 1), n);
   Motion node{Rows3::Zero(3, n), Rows3::Zero(3, n)};
   node.phi.leftCols<3>().setIdentity();
   node.d.middleCols<3>(3).setIdentity();
   out.base.resize(6, n);
   out.base << node.phi, node.d;
+  out.nodes.topRows<6>() = out.base;
   std::vector<Rows3> d_s(S, Rows3::Zero(3, n));
   for (std::size_t c = 0; c < field.cells.size(); ++c) {
     const double h = field.cells[c];
@@ -69,8 +70,6 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       Rows3 d = node.d.leftCols(active);
       for (std::size_t k = 0; k < S; ++k)
         d += h * table.a[j][k] * d_s[k];
-      out.positions.middleRows<3>(3 * static_cast<Eigen::Index>(at)).setZero();
-      out.positions.block(3 * static_cast<Eigen::Index>(at), 0, 3, active) = d;
       // (1); a product a·B b enters as half of itself and its transpose
       auto K = out.K.topLeftCorner(active, active);
       const Eigen::Index psi = layout.at(at);
@@ -98,6 +97,9 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       node.d.leftCols(active) += h * table.b[k] * d_s[k];
       node.phi.middleCols<3>(layout.at(c * S + k)).diagonal().array() += h * table.b[k];
     }
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(c + 1);
+    out.nodes.middleRows<3>(row) = node.phi;
+    out.nodes.middleRows<3>(row + 3) = node.d;
   }
   out.tip.resize(6, n);
   out.tip << node.phi, node.d;

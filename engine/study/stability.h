@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/study/robot_variation.h"
 #include "engine/study/static_study.h"
 
 namespace cprsim {
@@ -25,14 +26,16 @@ struct Stability {
   /// displacement of all rods' material.
   double softest = 0;
   std::vector<Vec6> softest_bodies;  ///< (rotation, translation) per body of the Newton system
-  std::vector<VecX> softest_rods;    ///< per rod: coordinates of its RodVariation
-  /// Body stiffness condensed over rods and joints, world axes, (rotation, translation) per body
-  /// about its centre of mass; empty if joints tie bodies (it is then no matrix of free bodies).
+  /// Stiffness of bodies, each about its centre of mass (rotation, translation), and of joint
+  /// coordinates, with rods in equilibrium; world axes; N/m, N, N m.
   MatX body_stiffness;
   /// Loads that have no potential (torques that keep their direction, followers) enter by their
   /// symmetric part: the verdict then is about divergence, not flutter.
   bool potential = true;
 };
+
+/// Stiffness of bodies and joint coordinates with every rod in equilibrium, before rigid joints.
+MatX condensed_stiffness(const RobotVariation& variation);
 
 /// Judges the present equilibrium.
 Stability judge(const StaticStudy& study);
