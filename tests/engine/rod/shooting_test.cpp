@@ -34,7 +34,7 @@ TEST(ShootingRod, StartsInItsRestShape) {
   Scene scene = grounded_rod(rod_end(EndJoint::kFixed, kWorld, kTop), RodEndSpec{});
   const Vec3 u(1.5, -0.7, 2);
   scene.rods[0].rest_curvature = u;
-  scene.solver.points = 20;
+  scene.solver.points = 30;
   Robot robot = build_robot(scene);
   const ShootingRod& rod = shooting(robot, 0);
   const NodeState& tip = rod.node(rod.cells());
