@@ -154,9 +154,8 @@ ShootingOptions shooting_options(const Scene& scene, const RodSpec& rod) {
   auto has = [&](Effect e) { return scene.effects.has(e) && !off_for(rod, effect_name(e)); };
   ShootingOptions o;
   o.integrator = scene.solver.integrator.value_or(kDefaultIntegrator);
-  o.cells =
-      scene.solver.points.value_or(default_cells(o.integrator, scene.solver.accuracy, rod.length,
-                                                 rod.length * rod.rest_curvature.norm()));
+  o.cells = scene.solver.points.value_or(default_cells(
+      o.integrator, scene.solver.accuracy, rod.length, rod.length * rod.rest_curvature.norm()));
   o.extension = has(Effect::kExtension);
   o.shear = has(Effect::kShear);
   o.rotary_inertia = has(Effect::kRotaryInertia);

@@ -295,9 +295,9 @@ RodEnergy ShootingRod::energy() const {
     if (options_.rotary_inertia)
       e.kinetic +=
           weight * 0.5 * vec(stage.omega).dot(section_.rhoJ.cwiseProduct(vec(stage.omega)));
-    e.elastic += weight * 0.5 *
-                 (bent.dot(section_.K_bt.cwiseProduct(bent)) +
-                  stretch.dot(K_se.cwiseProduct(stretch)));
+    e.elastic +=
+        weight * 0.5 *
+        (bent.dot(section_.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
     e.gravity -= weight * section_.rhoA * forcing_.gravity.dot(vec(stage.p));
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strains + i);

@@ -99,10 +99,10 @@ TEST(RestShapes, AreACurvatureOrAHelixAndInherited) {
 
 TEST(RestShapes, MustBeOneAndPossible) {
   const auto codes = [](const std::string& rest) {
-    return error_codes(load_text(scene_text(
-        "<cprsim:rod name='a' class='steel'><base attached_to='base' joint='fixed'/>"
-        "<length>0.2</length><rest>" +
-        rest + "</rest></cprsim:rod>")));
+    return error_codes(load_text(
+        scene_text("<cprsim:rod name='a' class='steel'><base attached_to='base' joint='fixed'/>"
+                   "<length>0.2</length><rest>" +
+                   rest + "</rest></cprsim:rod>")));
   };
   using Codes = std::vector<std::string>;
   EXPECT_EQ(codes("<curvature>0 900 0</curvature>"), Codes{});

@@ -42,7 +42,7 @@ TEST(ShootingRod, StartsInItsRestShape) {
   Equations equations(robot, 1e-9);
   equations.set_instant(0, true, StageRates{});
   const Vec3 start = position_of(tip);
-  EXPECT_LT(equations.evaluate().largest, 1e-14);  // nothing acts: round-off
+  EXPECT_LT(equations.evaluate().largest, 1e-14);       // nothing acts: round-off
   EXPECT_LT((position_of(tip) - start).norm(), 1e-12);  // the cells agree with the closed form
 }
 
