@@ -42,8 +42,7 @@ MatX holding_rows(const End& end, double length) {
   Eigen::Index count = 0;
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (rows.by_state.block<1, 6>(i, 6).cwiseAbs().maxCoeff() > 0) continue;
-    all.row(count++) =
-        rows.by_state.block<1, 6>(i, 0) * end.pose + rows.by_body.row(i) * end.body;
+    all.row(count++) = rows.by_state.block<1, 6>(i, 0) * end.pose + rows.by_body.row(i) * end.body;
   }
   return all.topRows(count);
 }
@@ -72,9 +71,9 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
     wide.leftCols(n) = rows;
     return wide;
   };
-  End base{&rod.spec->base, field.base, robot.port(rod.base), -force_of(field.base),
+  End base{&rod.spec->base,        field.base,         robot.port(rod.base), -force_of(field.base),
            -moment_of(field.base), over_all(own.base), MatX::Zero(6, n + 12)};
-  End tip{&rod.spec->tip, field.tip, robot.port(rod.tip), force_of(field.tip),
+  End tip{&rod.spec->tip,       field.tip,         robot.port(rod.tip),  force_of(field.tip),
           moment_of(field.tip), over_all(own.tip), MatX::Zero(6, n + 12)};
   ReducedRod out;
   if (rod.base_held) out.base_body = rod.base.body;
@@ -117,8 +116,7 @@ void add_bodies(const Robot& robot, bool metric, RobotVariation& v) {
   for (std::size_t b = 0; b < robot.bodies.size(); ++b) {
     const RigidBody& body = robot.bodies[b];
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
-    v.K.block<3, 3>(at, at) -=
-        swing(body.gravity_mass * robot.gravity, body.R * body.gravity_arm);
+    v.K.block<3, 3>(at, at) -= swing(body.gravity_mass * robot.gravity, body.R * body.gravity_arm);
     if (metric) {
       // enough to make the form definite where no rod moves with the body
       v.M.block<3, 3>(at, at) += 1e-3 * length * length * Mat3::Identity();
