@@ -72,6 +72,11 @@ void judge(IdentifyResult& result, SceneFit& model, const Study& study) {
       result.derivative_error = std::max(result.derivative_error, errors[j] / length);
   }
   result.confidence = confidence(J, result.fit.r, options);
+  // a value at a bound: would the data determine it if they were let?
+  options.fixed.assign(options.fixed.size(), false);
+  const Confidence free = confidence(J, result.fit.r, options);
+  for (std::size_t j = 0; j < options.fixed.size(); ++j)
+    if (result.fit.at_bound[j]) result.confidence.observable[j] = free.observable[j];
   for (const VecX& direction : result.confidence.combinations)
     result.combinations.push_back(combination_text(direction, study, result.fit.z));
 }
@@ -81,7 +86,7 @@ int exit_code_of(const IdentifyResult& result) {
   if (!result.fit.converged()) return kExitSimulationFailed;
   const auto& observable = result.confidence.observable;
   for (std::size_t j = 0; j < observable.size(); ++j)
-    if (!result.fit.at_bound[j] && observable[j] != Observability::kObservable)
+    if (result.fit.at_bound[j] || observable[j] != Observability::kObservable)
       return kExitExpectationFailed;
   return kExitDone;
 }
@@ -95,11 +100,9 @@ void warn(const IdentifyResult& result, const Study& study, const Console& conso
   if (!result.has_confidence()) return;
   for (std::size_t j = 0; j < study.values.size(); ++j) {
     const std::string& name = study.values[j].parameter.name;
-    if (result.fit.at_bound[j]) {
-      console.warn(name + " ends " + state_of(result, study, j) +
+    if (result.fit.at_bound[j])
+      console.warn(name + " ends " + bound_of(result, study, j) +
                    ", where the data push it: no interval; the others are as if it were known");
-      continue;
-    }
     switch (result.confidence.observable[j]) {
       case Observability::kNoInfluence:
         console.warn(name + " is not observable: nothing measured depends on it");

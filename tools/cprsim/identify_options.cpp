@@ -27,8 +27,9 @@ DATA is a CSV file with a header `name [unit],...` (m cm mm s ms rad deg N mN ..
 where nothing was read). With a column `time` it is the record of one dynamic run; without, every row
 is an equilibrium of its own. Columns called like a channel of the scene need no --match.
 
-Exit codes: 0 every value is determined; 1 fitted, but a value is not observable; 2 usage or table;
-3 scene; 4 no equilibrium at the start, or the search did not converge; 5 files)";
+Exit codes: 0 every value is determined; 1 fitted, but a value is not observable or ends at a bound;
+2 usage or table; 3 scene; 4 no equilibrium at the start, or no convergence; 5 files
+)";
 
 void add_texts(CLI::App& app, const std::string& name, std::vector<std::string>& list,
                const std::string& type, const std::string& help) {

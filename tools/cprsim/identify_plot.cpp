@@ -36,7 +36,9 @@ std::string script_of(const Study& study) {
       fmt::format("set terminal svg size 1000,{} font 'DejaVu Sans,11' background rgb 'white'\n",
                   60 + 300 * count);
   text += "set output folder.'/identify.svg'\ndata = folder.'/residuals.csv'\n";
-  text += "set border 3\nset tics nomirror\nset grid lt 1 lc rgb '#e4e4e4'\nset key top right\n";
+  text +=
+      "set border 3\nset tics nomirror\nset grid lt 1 lc rgb '#e4e4e4'\nset key outside top center "
+      "horizontal\n";
   text += fmt::format("set multiplot layout {},2\nset xlabel {}\n", count, quoted(axis));
   const std::string points = study.dynamic() ? "points pt 7 ps 0.25" : "points pt 7 ps 0.9";
   const std::string lines = study.dynamic() ? "lines lw 1.2" : "points pt 6 ps 1.6 lw 1.5";

@@ -104,14 +104,15 @@ bool IdentifyResult::determined(std::size_t j) const {
          std::isfinite(confidence.standard_error[static_cast<Eigen::Index>(j)]);
 }
 
+std::string bound_of(const IdentifyResult& result, const Study& study, std::size_t j) {
+  if (!result.fit.at_bound[j]) return "";
+  const StudyParameter& p = study.values[j].parameter;
+  const double value = p.value(result.fit.z[static_cast<Eigen::Index>(j)]);
+  return value < 0.5 * (p.low + p.high) ? "at its lower bound" : "at its upper bound";
+}
+
 std::string state_of(const IdentifyResult& result, const Study& study, std::size_t j) {
-  const auto k = static_cast<Eigen::Index>(j);
   if (!result.has_confidence()) return "not found";
-  if (result.fit.at_bound[j]) {
-    const StudyParameter& p = study.values[j].parameter;
-    return p.value(result.fit.z[k]) <= p.low + 0.5 * (p.high - p.low) ? "at its lower bound"
-                                                                      : "at its upper bound";
-  }
   switch (result.confidence.observable[j]) {
     case Observability::kNoInfluence:
       return "NOT OBSERVABLE: no influence";
@@ -122,7 +123,9 @@ std::string state_of(const IdentifyResult& result, const Study& study, std::size
     case Observability::kObservable:
       break;
   }
-  return std::isnan(result.confidence.standard_error[k]) ? "no error estimate" : "observable";
+  if (result.fit.at_bound[j]) return bound_of(result, study, j);
+  const double error = result.confidence.standard_error[static_cast<Eigen::Index>(j)];
+  return std::isnan(error) ? "no error estimate" : "observable";
 }
 
 Interval interval_of(const IdentifyResult& result, const Study& study, std::size_t j) {

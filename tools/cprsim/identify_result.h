@@ -32,7 +32,10 @@ struct IdentifyResult {
   bool determined(std::size_t j) const;
 };
 
-/// A fitted value in words: "observable", "at its lower bound", "no influence", ...
+/// "at its lower bound" or "at its upper bound"; empty where it is at none
+std::string bound_of(const IdentifyResult& result, const Study& study, std::size_t j);
+
+/// A fitted value in words: "observable", "at its lower bound", "NOT OBSERVABLE: dependent", ...
 std::string state_of(const IdentifyResult& result, const Study& study, std::size_t j);
 
 struct Interval {
