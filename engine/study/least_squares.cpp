@@ -75,18 +75,6 @@ MatX free_columns(const MatX& J, const std::vector<bool>& held) {
   return free;
 }
 
-FitStatus judge(FitReport& report, const FitOptions& options) {
-  const MatX J = free_columns(report.J, report.at_bound);
-  const GaussNewtonStep step = gauss_newton_step(J, report.r, options.rank_tolerance);
-  report.remaining_step = step.step.cwiseAbs().maxCoeff();
-  for (Eigen::Index j = 0; j < J.cols(); ++j) {
-    const double noise = options.noise_fraction * step.standard_error[j];
-    if (std::abs(step.step[j]) > std::max(options.step_tolerance, noise))
-      return FitStatus::kStalled;
-  }
-  return FitStatus::kConverged;
-}
-
 }  // namespace
 
 const char* to_string(FitStatus status) {
@@ -160,9 +148,20 @@ FitReport fit(LeastSquaresProblem& problem, const VecX& start, const VecX& low, 
   const bool linear = projected.J.size() > 0 && !projected.derivative_failed;
   report.status = end;
   if (!linear || end == FitStatus::kInterrupted) return report;
-  const FitStatus verdict = judge(report, options);
+  const FitStatus verdict =
+      settled(report.J, report.r, report.at_bound, options, &report.remaining_step)
+          ? FitStatus::kConverged
+          : FitStatus::kStalled;
   if (end == FitStatus::kConverged || verdict == FitStatus::kConverged) report.status = verdict;
   return report;
+}
+
+bool settled(const MatX& J, const VecX& r, const std::vector<bool>& held, const FitOptions& options,
+             double* largest) {
+  const GaussNewtonStep rest = gauss_newton_step(free_columns(J, held), r, options.rank_tolerance);
+  if (largest != nullptr) *largest = rest.step.cwiseAbs().maxCoeff();
+  const VecX noise = options.noise_fraction * rest.standard_error;
+  return (rest.step.cwiseAbs().array() <= noise.cwiseMax(options.step_tolerance).array()).all();
 }
 
 bool difference_jacobian(LeastSquaresProblem& problem, const VecX& z, const VecX& r, double step,

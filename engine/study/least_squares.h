@@ -62,6 +62,12 @@ struct FitReport {
 FitReport fit(LeastSquaresProblem& problem, const VecX& z, const VecX& low, const VecX& high,
               const FitOptions& options);
 
+/// Whether the Gauss-Newton step that remains is what FitStatus::kConverged says.
+/// @param held parameters that do not move: at a bound, or without influence
+/// @param largest if not null, the largest entry of the step
+bool settled(const MatX& J, const VecX& r, const std::vector<bool>& held, const FitOptions& options,
+             double* largest = nullptr);
+
 /// ∂r/∂z by central differences with this step; at a bound, and where one side has no answer, by
 /// the one-sided formula of the same order.
 /// @return false if neither side has an answer

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "engine/run/observe.h"
 #include "scenes/loader/load.h"
@@ -92,6 +93,8 @@ TEST_F(ReleasedRod, GivesBackStiffnessAndDampingAsOftenAsItPromises) {
       squares += std::pow(error / values[j]["standard_error"].get<double>(), 2);
     }
   }
+  RecordProperty("intervals_that_hold", inside);
+  RecordProperty("squares", std::to_string(squares));
   // 40 intervals of 95 %: 38 expected, fewer than 34 once in 500 times
   EXPECT_GE(inside, 34);
   // chi-square with 40 degrees of freedom: 17.9 and 73.4 bound all but a thousandth on either side

@@ -50,7 +50,22 @@ std::string combination_text(const VecX& direction, const Study& study, const Ve
              : text + " changes nothing measured";
 }
 
-void judge(IdentifyResult& result, SceneFit& model, const Study& study) {
+/// A value without influence goes back to its start, and the rest of the search is judged without
+/// it: its column is nothing but the error of the differences, which never settles.
+void set_aside(IdentifyResult& result, FitOptions search) {
+  std::vector<bool> held = result.fit.at_bound;
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    if (result.confidence.observable[j] != Observability::kNoInfluence) continue;
+    held[j] = true;
+    result.fit.at_bound[j] = false;
+    result.fit.z[static_cast<Eigen::Index>(j)] = 1;
+  }
+  search.rank_tolerance = result.confidence.rank_tolerance;
+  if (result.fit.status == FitStatus::kStalled && settled(result.fit.J, result.fit.r, held, search))
+    result.fit.status = FitStatus::kConverged;
+}
+
+void judge(IdentifyResult& result, SceneFit& model, const Study& study, const FitOptions& search) {
   if (result.fit.J.size() == 0 || result.fit.status == FitStatus::kNoDerivative) return;
   VecX errors;
   MatX J;
@@ -79,6 +94,7 @@ void judge(IdentifyResult& result, SceneFit& model, const Study& study) {
     if (result.fit.at_bound[j]) result.confidence.observable[j] = free.observable[j];
   for (const VecX& direction : result.confidence.combinations)
     result.combinations.push_back(combination_text(direction, study, result.fit.z));
+  set_aside(result, search);
 }
 
 int exit_code_of(const IdentifyResult& result) {
@@ -173,7 +189,7 @@ int identify_command(const Words& words) {
   search.go_on = [] { return stop_signal() == 0; };
   result.fit = fit(model, model.start(), model.low(), model.high(), search);
   if (result.fit.rejected > 0) result.failure = model.failure();
-  judge(result, model, study);
+  judge(result, model, study, search);
   result.exit_code = exit_code_of(result);
   result.simulations = model.simulations();
   result.restarts = model.restarts();
