@@ -46,7 +46,8 @@ const std::vector<Layer>& layers() {
        join(rod, {"engine/rod/", "engine/solve/problem.h", "engine/run/snapshot.h"}),
        {}},
       {"engine/run/", {"engine/"}, {}},
-      // unknown numbers and their confidence: no physics. MINPACK's search is Eigen's unsupported one
+      // unknown numbers and their confidence: no physics. MINPACK's search is Eigen's unsupported
+      // one
       {"engine/study/", {"engine/math/"}, {"unsupported/Eigen/"}},
       {"scenes/", model, join({"tinyxml2.h", "assimp/"}, kPosix)},
       {"collision/",
