@@ -178,8 +178,7 @@ struct Simulation::Parts {
       motions.push_back(motion);
       moving = moving || link.velocity_given;
     }
-    for (Joint& joint : robot.joints)
-      joint.track.set_start(VecX::Constant(1, joint.q), VecX::Zero(1));
+    robot.start_joints(motions);
     if (moving) moving = equations.follow_bodies(motions);
     for (RobotRod& rod : robot.rods) {
       if (moving)
@@ -225,6 +224,10 @@ const SolveReport& Simulation::start() {
     return p.report;
   }
   if (!p.free_only()) p.start_motion();
+  // equilibria at the start know no friction: which of many would it be?
+  if (p.scene.simulation.mode != Mode::kStatic)
+    for (Joint& joint : p.robot.joints)
+      joint.engage_friction();
   p.statistics.start_iterations = std::exchange(p.statistics.iterations, 0);
   p.statistics.max_iterations = 0;
   p.ledger.open();
@@ -323,7 +326,9 @@ void Simulation::Parts::step_quasistatic() {
     count(report);
     if (report.converged()) {
       start_motion();
-      ledger.close_step(t, 0, 0.5 * step * (power + ledger.drive_power(t, true)));
+      equations.accept_equilibrium(t);
+      ledger.close_step(t, 0,
+                        0.5 * step * (power + ledger.drive_power(t, true)) + ledger.effort_work(t));
       ++statistics.steps;
       if (t >= end) status = RunStatus::kDone;
       return;
