@@ -306,6 +306,21 @@ Pose Robot::link_pose(std::size_t link) const {
   return place.body < 0 ? place.X : bodies[static_cast<std::size_t>(place.body)].pose() * place.X;
 }
 
+bool Robot::has_joint_loops() const {
+  // each joint joins two groups that were apart, or closes a loop; the ground is the last element
+  std::vector<std::size_t> group(bodies.size() + 1);
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  const auto of = [&](int body) {
+    return group[body < 0 ? bodies.size() : static_cast<std::size_t>(body)];
+  };
+  for (const Joint& joint : joints) {
+    const std::size_t a = of(joint.parent), b = of(joint.child);
+    if (a == b) return true;
+    std::replace(group.begin(), group.end(), a, b);
+  }
+  return false;
+}
+
 void Robot::start_joints(const std::vector<Vec6>& motions) {
   for (Joint& joint : joints) {
     const Pose P = body_pose(joint.parent), C = body_pose(joint.child);

@@ -24,6 +24,7 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
     offset += joint.unknowns();
   }
   size_ = offset;
+  loops_ = robot.has_joint_loops();
 }
 
 PointLoad Equations::scaled_load(const LoadSpec& load) const {

@@ -127,7 +127,7 @@ class Equations final : public Problem {
   void assemble_bodies();
   void assemble_joints();
   bool solve(double mu);
-  bool solve_least_motion();
+  bool solve_least_motion(const VecX& columns);
   void distribute();
   double force_unit(int body) const;
   VecX column_units() const;
@@ -142,6 +142,7 @@ class Equations final : public Problem {
   double fraction_ = 1, drag_ = 0, softness_ = 0;
   bool bodies_held_ = false;
   bool gaps_captured_ = false;
+  bool loops_ = false;  ///< joints form closed loops
   bool loads_on_ = true;
 
   // residual side

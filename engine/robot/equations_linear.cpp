@@ -19,6 +19,10 @@ constexpr double kSingularPivot = 1e-10;
 // Likewise for the global system, and how well its rows must then be met.
 constexpr double kSingularSystem = 1e-13, kConsistent = 1e-6;
 
+// Joints that close a loop may say the same twice (a planar four-bar thrice), up to round-off that
+// elimination has magnified. Taken for a pivot it would throw the multipliers about.
+constexpr double kSingularLoop = 1e-12;
+
 }  // namespace
 
 bool Equations::condense_rods(bool keep_all) {
@@ -206,8 +210,15 @@ VecX Equations::row_units() const {
 
 // Something moves without resistance, like a rod that can spin between two balls. If the rows can
 // be met all the same, the smallest motion that does so is as good as any.
-bool Equations::solve_least_motion() {
-  x_ = -least_norm_solution(J_, r_, kSingularSystem);
+// Multipliers that rows said twice leave open become the smallest ones: by themselves, not their
+// increments, or what extrapolation in time adds to them would stay and grow.
+bool Equations::solve_least_motion(const VecX& columns) {
+  VecX present = VecX::Zero(size_);
+  for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j)
+    present.segment<6>(joint_offset_[j]) = robot_.joints[j].lambda;
+  present = columns.cwiseInverse().asDiagonal() * present;
+  x_ = least_norm_solution(J_, J_ * present - r_, loops_ ? kSingularLoop : kSingularSystem);
+  x_ -= present;
   // rows that say the same twice do so to round-off only, which near the solution is all there is
   return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm() + 0.1 * tolerance_;
 }
@@ -220,9 +231,9 @@ bool Equations::solve(double mu) {
   J_ = rows.cwiseInverse().asDiagonal() * J_ * columns.asDiagonal();
   r_ = rows.cwiseInverse().asDiagonal() * r_;
   if (mu == 0) {
-    if (solve_square(J_, r_, kSingularSystem, x_)) {
+    if (solve_square(J_, r_, loops_ ? kSingularLoop : kSingularSystem, x_)) {
       x_ = -x_;
-    } else if (!solve_least_motion()) {
+    } else if (!solve_least_motion(columns)) {
       return false;
     }
   } else {

@@ -56,10 +56,6 @@ Scene four_bar(double crank, const Mat3& R) {
   scene.joints.push_back(joint_at(scene, JointKind::kRevolute, R * B, 0, 1, axis));
   scene.joints.push_back(joint_at(scene, JointKind::kRevolute, R * C, 1, 2, axis));
   scene.joints.push_back(joint_at(scene, JointKind::kRevolute, R * D, kWorld, 2, axis));
-  for (JointSpec& joint : scene.joints) {
-    // axes are in the joint frame, which has the attitude of the world
-    joint.damping = 0;
-  }
   return scene;
 }
 
@@ -125,7 +121,7 @@ TEST(FourBar, KeepsItsEnergyInFreeMotion) {
       open = std::max(open, std::abs(std::remainder(shape.rocker - rocker, 2 * M_PI)));
     }
     ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-    std::printf("steps %ld it %ld rej %ld retried %ld\n", simulation.statistics().steps, simulation.statistics().iterations, simulation.statistics().rejected, simulation.statistics().retried);
+    EXPECT_EQ(simulation.statistics().retried, 0);
     EXPECT_GT(fastest, 0.1);
     EXPECT_LT(most, 1e-4 * fastest);
     EXPECT_LT(open, 1e-7);
