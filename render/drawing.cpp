@@ -183,7 +183,8 @@ double colored_value(ColorBy by, const RodPoint& point) {
     case ColorBy::kTension:
       return n.z();
     case ColorBy::kStrainEnergy:
-      return 0.5 * std::abs(m.dot(point.curvature) + n.dot(point.shear_stretch - Vec3::UnitZ()));
+      return 0.5 * std::abs(m.dot(point.curvature - point.rest_curvature) +
+                            n.dot(point.shear_stretch - Vec3::UnitZ()));
     case ColorBy::kNone:
       break;
   }

@@ -2,8 +2,10 @@
 #include "engine/math/linear_solve.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 namespace cprsim {
@@ -23,8 +25,54 @@ VecX least_norm_solution(const MatX& A, const VecX& b, double threshold) {
   return qr.solve(b);
 }
 
+MatX least_norm_solutions(const MatX& A, const MatX& B, double threshold) {
+  if (A.rows() == 0) return MatX::Zero(A.cols(), B.cols());
+  Eigen::CompleteOrthogonalDecomposition<MatX> qr;
+  qr.setThreshold(threshold);
+  qr.compute(A);
+  return qr.solve(B);
+}
+
 VecX solve_symmetric(const MatX& N, const VecX& b) {
   return N.ldlt().solve(b);
+}
+
+MatX solve_columns(const MatX& A, const MatX& B) {
+  return A.partialPivLu().solve(B);
+}
+
+bool is_positive_definite(const MatX& A) {
+  return A.llt().info() == Eigen::Success;
+}
+
+double conditioning(const MatX& A) {
+  if (A.size() == 0) return 0;
+  // by the smaller Gram matrix: ratios below 1e-8 are noise, and 0 to whoever asks
+  const MatX gram = A.rows() < A.cols() ? MatX(A * A.transpose()) : MatX(A.transpose() * A);
+  const VecX values =
+      Eigen::SelfAdjointEigenSolver<MatX>(gram, Eigen::EigenvaluesOnly).eigenvalues();
+  const double largest = values.maxCoeff();
+  return largest > 0 ? std::sqrt(std::max(0.0, values.minCoeff()) / largest) : 0;
+}
+
+SymmetricModes symmetric_modes(const MatX& K, const MatX& M) {
+  const Eigen::LLT<MatX> llt(M);
+  const auto L = llt.matrixL();
+  MatX A = L.solve(K);
+  A = L.solve(A.transpose()).eval();
+  const Eigen::SelfAdjointEigenSolver<MatX> solver(0.5 * (A + A.transpose()));
+  return {solver.eigenvalues(), llt.matrixU().solve(solver.eigenvectors())};
+}
+
+MatX kernel_of(const MatX& C, double threshold) {
+  const Eigen::Index n = C.cols();
+  if (C.rows() == 0) return MatX::Identity(n, n);
+  Eigen::ColPivHouseholderQR<MatX> qr(C.transpose());
+  qr.setThreshold(threshold);
+  const Eigen::Index free = n - qr.rank();
+  MatX Z = MatX::Zero(n, free);
+  Z.bottomRows(free).setIdentity();
+  return qr.householderQ() * Z;
 }
 
 // Reflections H_k = I - 2 v v^T make A upper triangular; Q = H_0 ... H_5.

@@ -15,8 +15,32 @@ bool solve_square(const MatX& A, const VecX& b, double smallest_pivot, VecX& x);
 /// (relative to the largest pivot of a QR decomposition with column pivoting).
 VecX least_norm_solution(const MatX& A, const VecX& b, double threshold);
 
+/// The same for every column of B.
+MatX least_norm_solutions(const MatX& A, const MatX& B, double threshold);
+
 /// Solution of N x = b for symmetric N, positive definite or nearly so (LDL^T with pivoting).
 VecX solve_symmetric(const MatX& N, const VecX& b);
+
+/// Solution of A X = B by LU with partial pivoting; A must be regular.
+MatX solve_columns(const MatX& A, const MatX& B);
+
+bool is_positive_definite(const MatX& A);
+
+/// Smallest over largest singular value; 0 for an empty matrix.
+double conditioning(const MatX& A);
+
+/// Eigenvalues (ascending) and vectors of K x = lambda M x for symmetric K and positive definite M;
+/// vectors are M-orthonormal columns.
+struct SymmetricModes {
+  VecX values;
+  MatX vectors;
+};
+
+SymmetricModes symmetric_modes(const MatX& K, const MatX& M);
+
+/// Orthonormal columns that span what the rows of C leave free; rows count as dependent below
+/// `threshold`.
+MatX kernel_of(const MatX& C, double threshold);
 
 /// A (12 × 6) = Q1 R with orthonormal columns Q1 and upper triangular R; the columns of Q2 complete
 /// those of Q1 to a basis. By Householder reflections.

@@ -64,6 +64,8 @@ struct RodSpec {
   SectionSpec section;
   std::optional<MaterialSpec> material;
   StiffnessSpec stiffness;
+  Vec3 rest_curvature =
+      Vec3::Zero();  ///< bending about x and y, twist: of the unloaded rod, section axes, 1/m
   std::optional<DampingSpec> damping;
   bool gravity = true;
   std::vector<std::string> without;  ///< effects switched off for this rod

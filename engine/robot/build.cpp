@@ -135,20 +135,23 @@ bool off_for(const RodSpec& rod, const char* effect) {
 
 // Measured on the published Stewart-Gough robot (rods bent by about a radian): N cells of gauss6
 // leave an error of 3.4e-8 L (6 / N)^6. An accuracy asked for gets ten times less; without one, 6
-// cells. Other integrators are there to be compared with and get cells for about the same cost.
-int default_cells(ArcIntegrator integrator, const std::optional<double>& accuracy, double length) {
-  if (integrator != ArcIntegrator::kGauss6) return 12;
-  if (!accuracy) return 6;
-  return std::clamp(static_cast<int>(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6))),
-                    3, 60);
+// cells. Other integrators are there to be compared with and get cells for about the same cost. The
+// error depends on how far a cell turns: a rod wound up by `turn` > 1 rad gets as many times more.
+int default_cells(ArcIntegrator integrator, const std::optional<double>& accuracy, double length,
+                  double turn) {
+  const double winding = std::max(1.0, turn);
+  double cells = integrator == ArcIntegrator::kGauss6 ? 6 : 12;
+  if (integrator == ArcIntegrator::kGauss6 && accuracy)
+    cells = std::clamp(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6)), 3.0, 60.0);
+  return static_cast<int>(std::clamp(std::ceil(cells * winding), 3.0, 600.0));
 }
 
 ShootingOptions shooting_options(const Scene& scene, const RodSpec& rod) {
   auto has = [&](Effect e) { return scene.effects.has(e) && !off_for(rod, effect_name(e)); };
   ShootingOptions o;
   o.integrator = scene.solver.integrator.value_or(kDefaultIntegrator);
-  o.cells =
-      scene.solver.points.value_or(default_cells(o.integrator, scene.solver.accuracy, rod.length));
+  o.cells = scene.solver.points.value_or(default_cells(
+      o.integrator, scene.solver.accuracy, rod.length, rod.length * rod.rest_curvature.norm()));
   o.extension = has(Effect::kExtension);
   o.shear = has(Effect::kShear);
   o.rotary_inertia = has(Effect::kRotaryInertia);
@@ -180,7 +183,7 @@ void add_rods(Robot& robot) {
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
                                                rod.section, rod.length, options);
-    model->set_straight(robot.pose_of(rod.base));
+    model->set_unloaded(robot.pose_of(rod.base));
     rod.model = std::move(model);
     robot.rods.push_back(std::move(rod));
   }

@@ -139,6 +139,13 @@ EndRows RodEnd::rows(const NodeState& end, const Port& port, const RodScale& sca
   return rows;
 }
 
+bool RodEnd::turns_about(const NodeState& end, const Port& port, Vec3& a, Vec3& b) const {
+  if (kind_ != Kind::kUniversal) return false;
+  a = port.R * a_;
+  b = rotation_of(end) * b_;
+  return true;
+}
+
 const char* RodEnd::row_name(int i) const {
   static const char* const kPosition[] = {"position x", "position y", "position z"};
   static const char* const kFree[] = {"force x",  "force y",  "force z",

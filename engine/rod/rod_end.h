@@ -52,6 +52,10 @@ class RodEnd {
   Vec6 value(const NodeState& end, const Port& port, const RodScale& scale) const;
   EndRows rows(const NodeState& end, const Port& port, const RodScale& scale) const;
 
+  /// For a universal joint: the axis on the body and that on the rod, world axes, about which it
+  /// turns in this order. @return false for other joints.
+  bool turns_about(const NodeState& end, const Port& port, Vec3& a, Vec3& b) const;
+
   /// e.g. "moment about z": what row i (0..5) says.
   const char* row_name(int i) const;
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/math/types.h"
+#include "engine/rod/field.h"
 #include "engine/rod/rod_end.h"
 #include "engine/rod/shape.h"
 #include "engine/time/scheme.h"
@@ -126,6 +127,8 @@ class RodModel {
                        const std::vector<double>& weights) = 0;
 
   virtual RodSample observe() const = 0;
+  /// The equilibrium at the last evaluate(), for stability and modes.
+  virtual RodField field() const = 0;
   virtual RodEnergy energy() const = 0;
   virtual std::string row_name(int row) const = 0;
 

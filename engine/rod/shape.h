@@ -16,6 +16,7 @@ struct RodPoint {
   Vec3 velocity{0, 0, 0};                           ///< at fixed s, world axes
   Vec3 force{0, 0, 0}, moment{0, 0, 0};             ///< n, m, world axes
   Vec3 curvature{0, 0, 0}, shear_stretch{0, 0, 1};  ///< u, v, section axes
+  Vec3 rest_curvature{0, 0, 0};                     ///< u without load
 };
 
 struct RodSample {

@@ -74,23 +74,30 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
   if (options_.rotary_inertia) rotation_track_.resize(3 * static_cast<Eigen::Index>(n));
   reference_rotations_.assign(9 * n, 0);
   forcing_.length = length;
-  set_straight(Pose{});
+  set_unloaded(Pose{});
 }
 
-void ShootingRod::set_straight(const Pose& X_WBase) {
+// With constant u: R = R_0 exp(s u^), p = p_0 + R_0 (integral of exp) z, the integral being
+// s J_l(s u) (engine/math/so3.h).
+void ShootingRod::set_unloaded(const Pose& X_WBase) {
   NodeState state{};
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.R) = X_WBase.R;
   Eigen::Map<Vec3>(state.p) = X_WBase.p;
   starts_.assign(1, state);
   segment_first_ = {0, static_cast<std::size_t>(cells_)};
   for (CellStage& stage : stages_) {
-    std::fill_n(stage.w, 3, 0.0);
+    // Omega = s u stays parallel to u, so that its rate w is u itself
+    Eigen::Map<Vec3>(stage.w) = section_.u_rest;
     std::fill_n(stage.v, 2, 0.0);
     stage.v[2] = 1;
   }
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     nodes_[k] = state;
-    Eigen::Map<Vec3>(nodes_[k].p) += X_WBase.R.col(2) * (grid_[k] * forcing_.length);
+    const double s = grid_[k] * forcing_.length;
+    const Vec3 turn = s * section_.u_rest;
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nodes_[k].R) =
+        X_WBase.R * exp_so3(turn);
+    Eigen::Map<Vec3>(nodes_[k].p) += X_WBase.R * (s * right_jacobian(-turn).col(2));
   }
   evaluated_ = false;
 }
@@ -145,7 +152,9 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
 }
 
 void ShootingRod::update_stage_inputs() {
-  const Vec3 K_rest = Vec3::Zero();  // K_bt u*, straight rest shape
+  // m = K (u - u_rest) + B u_t with u_t = c_v u + x_h: u = C (K u_rest - B x_h) + C m. Damping
+  // acts on the rate alone, and the rest curvature has none.
+  const Vec3 K_rest = section_.K_bt.cwiseProduct(section_.u_rest);
   const auto n = static_cast<Eigen::Index>(stage_count());
   const auto strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
   const Vec3 C_bt = compliance_bt(), C_se = compliance_se();

@@ -43,8 +43,9 @@ class ShootingRod final : public RodModel {
   ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip,
               const SectionProperties& section, double length, const ShootingOptions& options);
 
-  /// Straight and unloaded from the base frame.
-  void set_straight(const Pose& X_WBase);
+  /// The unloaded shape from the base frame: a straight line, or the helix of a constant rest
+  /// curvature.
+  void set_unloaded(const Pose& X_WBase);
 
   void prepare(const StageRates& rates, const RodForcing& forcing) override;
   RodResidual evaluate(const Port& base, const Port& tip) override;
@@ -73,6 +74,7 @@ class ShootingRod final : public RodModel {
   void predict(const std::vector<const Unknowns*>& past,
                const std::vector<double>& weights) override;
   RodSample observe() const override;
+  RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
 

@@ -48,8 +48,10 @@ void ShootingRod::bow(const Port& base, const Port& tip) {
   const double ratio = chord.norm() / forcing_.length;
   if (ratio > 0.999) return;
   Mat3 R = base.R;
-  if (!base_.fixed() && ratio > 1e-6) R = rotation_between(R.col(2), chord) * R;
-  set_straight({R, base.p});
+  const Vec3 unloaded = R * right_jacobian(-forcing_.length * section_.u_rest).col(2);
+  if (!base_.fixed() && ratio > 1e-6) R = rotation_between(unloaded, chord) * R;
+  set_unloaded({R, base.p});
+  if (!section_.u_rest.isZero()) return;  // a bent rod knows where to go
   const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
   const int axis = section_.K_bt.x() <= section_.K_bt.y() ? 0 : 1;
   const auto S = static_cast<std::size_t>(table_->stages);
@@ -268,6 +270,7 @@ RodSample ShootingRod::observe() const {
       sides += 1;
     }
     point.curvature = u / sides;
+    point.rest_curvature = section_.u_rest;
     point.shear_stretch = v / sides;
   }
   return sample;
@@ -287,13 +290,14 @@ RodEnergy ShootingRod::energy() const {
     const double weight = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
     const CellStage& stage = stages_[j];
     const auto i = 3 * static_cast<Eigen::Index>(j);
-    const Vec3 u = vec(stage.u), stretch = vec(stage.v) - z;
+    const Vec3 bent = vec(stage.u) - section_.u_rest, stretch = vec(stage.v) - z;
     e.kinetic += weight * 0.5 * section_.rhoA * track_.v.segment<3>(i).squaredNorm();
     if (options_.rotary_inertia)
       e.kinetic +=
           weight * 0.5 * vec(stage.omega).dot(section_.rhoJ.cwiseProduct(vec(stage.omega)));
-    e.elastic += weight * 0.5 *
-                 (u.dot(section_.K_bt.cwiseProduct(u)) + stretch.dot(K_se.cwiseProduct(stretch)));
+    e.elastic +=
+        weight * 0.5 *
+        (bent.dot(section_.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
     e.gravity -= weight * section_.rhoA * forcing_.gravity.dot(vec(stage.p));
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strains + i);
@@ -309,8 +313,9 @@ RodEnergy ShootingRod::energy() const {
   const Vec3 v = along_cell(stages_.data(), *table_, &CellStage::v, 0);
   const Vec3 n_S = rotation_of(base).transpose() * force_of(base),
              m_S = rotation_of(base).transpose() * moment_of(base);
+  const Vec3 bent = u - section_.u_rest;
   const double density =
-      0.5 * (u.dot(section_.K_bt.cwiseProduct(u)) + (v - z).dot(K_se.cwiseProduct(v - z)));
+      0.5 * (bent.dot(section_.K_bt.cwiseProduct(bent)) + (v - z).dot(K_se.cwiseProduct(v - z)));
   e.feed_power =
       density - n_S.dot(v) - m_S.dot(u) - section_.rhoA * forcing_.gravity.dot(position_of(base));
   return e;

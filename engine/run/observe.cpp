@@ -73,6 +73,7 @@ RodPoint section_between(const RodPoint& a, const RodPoint& b, const Between& at
   point.moment = at(a.moment, b.moment);
   point.curvature = at(a.curvature, b.curvature);
   point.shear_stretch = at(a.shear_stretch, b.shear_stretch);
+  point.rest_curvature = b.rest_curvature;
   return point;
 }
 

@@ -71,6 +71,7 @@ SectionProperties section_properties(const RodSpec& rod) {
     s.B_bt = {b.bending, b.bending, b.torsion};
     s.B_se = {b.shear, b.shear, b.axial};
   }
+  s.u_rest = rod.rest_curvature;
   const Vec2& size = rod.section.size;
   s.half_width =
       rod.section.shape == SectionShape::kRectangle ? 0.5 * size.norm() : size.maxCoeff();

@@ -23,6 +23,7 @@ struct SectionProperties {
   Vec3 K_bt = Vec3::Zero();            ///< EI_x, EI_y, GJ
   Vec3 K_se = Vec3::Zero();            ///< GA_x, GA_y, EA
   Vec3 B_bt = Vec3::Zero(), B_se = Vec3::Zero();
+  Vec3 u_rest = Vec3::Zero();  ///< curvature and twist of the unloaded rod, the same all along it
   double rhoA = 0;
   Vec3 rhoJ = Vec3::Zero();  ///< rho (I_x, I_y, I_x + I_y)
   double half_width = 0;     ///< largest distance from the centre, m

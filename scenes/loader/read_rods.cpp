@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "scenes/loader/reading.h"
 #include "scenes/loader/suggest.h"
@@ -168,6 +169,32 @@ void read_stiffness(const Chain& chain, RodSpec& rod) {
   if (const Node* group = part(chain, "stiffness")) k.place = group->place;
 }
 
+// A helix of radius r and pitch 2 pi c has curvature r / (r2 + c2) and torsion c / (r2 + c2); its
+// section frame turns about a fixed axis, so that both are constant in section axes.
+void read_rest(Reading& r, const Chain& chain, RodSpec& rod) {
+  const Node* rest = part(chain, "rest");
+  if (!rest) return;
+  const Node* curvature = rest->child("curvature");
+  const Node* helix = rest->child("helix");
+  if (curvature && helix)
+    r.report.error("E310", *helix, "give <curvature> or <helix>, not both");
+  else if (rest->children.empty())
+    r.report.missing("E303", *rest, "<rest> has no shape").suggestion =
+        "<curvature>bending_x bending_y twist</curvature>";
+  if (curvature) rod.rest_curvature = vec3_of(curvature, Vec3::Zero());
+  if (helix) {
+    const double radius = number_of(helix->child("radius"), 0),
+                 c = number_of(helix->child("pitch"), 0) / (2 * std::numbers::pi);
+    if (radius > 0) rod.rest_curvature = Vec3(0, radius, c) / (radius * radius + c * c);
+  }
+  const SectionSpec& section = rod.section;
+  const double half = section.size.maxCoeff() / (section.shape == SectionShape::kRectangle ? 2 : 1);
+  if (rod.rest_curvature.head<2>().norm() * half >= 1)
+    r.report.error("E506", *rest,
+                   "without load " + describe(*chain.front()) +
+                       " would be bent more tightly than its own thickness allows");
+}
+
 // what neither measured stiffness nor material gives
 void require_stiffness(Reading& r, const Chain& chain, const RodSpec& rod) {
   const Node& node = *chain.front();
@@ -284,6 +311,7 @@ void read_rods(Reading& r, const Node&) {
       read_section(r, chain, rod);
       read_material(r, chain, rod);
       read_stiffness(chain, rod);
+      read_rest(r, chain, rod);
       require_stiffness(r, chain, rod);
       if (const Node* damping = part(chain, "damping")) {
         const auto value = [&](const char* key) {

@@ -46,6 +46,7 @@ const std::vector<Layer>& layers() {
        join(rod, {"engine/rod/", "engine/solve/problem.h", "engine/run/snapshot.h"}),
        {}},
       {"engine/run/", {"engine/"}, {}},
+      {"engine/study/", {"engine/"}, {}},
       {"scenes/", model, join({"tinyxml2.h", "assimp/"}, kPosix)},
       {"collision/",
        join(model, {"engine/robot/free_bodies.h", "engine/run/snapshot.h"}),

@@ -85,6 +85,35 @@ TEST(RodClasses, GiveWhatTheRodDoesNotSay) {
   EXPECT_EQ(rod.base.joint, EndJoint::kBall);
 }
 
+TEST(RestShapes, AreACurvatureOrAHelixAndInherited) {
+  const auto scene = scene_of(R"(
+    <cprsim:rod_class name="bent" class="steel"><rest><curvature>1 -2 0.5</curvature></rest></cprsim:rod_class>
+    <cprsim:rod name="a" class="bent"><base attached_to="base" joint="fixed"/><length>0.2</length></cprsim:rod>
+    <cprsim:rod name="b" class="bent"><base attached_to="base" joint="fixed"/><length>0.2</length>
+      <rest><helix><radius>0.03</radius><pitch>-0.25132741228718347</pitch></helix></rest></cprsim:rod>)");
+  EXPECT_EQ(scene->rods.at(0).rest_curvature, Vec3::Zero());
+  EXPECT_EQ(scene->rods.at(1).rest_curvature, Vec3(1, -2, 0.5));
+  // pitch -2 pi 0.04: r / (r2 + c2) = 0.03 / 0.0025, c / (r2 + c2) = -0.04 / 0.0025
+  EXPECT_LT((scene->rods.at(2).rest_curvature - Vec3(0, 12, -16)).norm(), 1e-12);
+}
+
+TEST(RestShapes, MustBeOneAndPossible) {
+  const auto codes = [](const std::string& rest) {
+    return error_codes(load_text(
+        scene_text("<cprsim:rod name='a' class='steel'><base attached_to='base' joint='fixed'/>"
+                   "<length>0.2</length><rest>" +
+                   rest + "</rest></cprsim:rod>")));
+  };
+  using Codes = std::vector<std::string>;
+  EXPECT_EQ(codes("<curvature>0 900 0</curvature>"), Codes{});
+  EXPECT_EQ(codes("<curvature>0 1100 0</curvature>"), Codes{"E506"});  // radius 1 mm
+  EXPECT_EQ(codes(""), Codes{"E303"});
+  EXPECT_EQ(codes("<curvature>0 1 0</curvature><helix><radius>1</radius><pitch>1</pitch></helix>"),
+            Codes{"E310"});
+  EXPECT_EQ(codes("<helix><radius>-1</radius><pitch>1</pitch></helix>"), Codes{"E306"});
+  EXPECT_EQ(codes("<file>shape.csv</file>"), Codes{"E520"});
+}
+
 TEST(Loads, ActOnBodiesAndRodPoints) {
   const auto scene = scene_of(R"(
     <cprsim:load at='leg::tip'><force>1 0 0</force></cprsim:load>

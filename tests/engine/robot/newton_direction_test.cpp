@@ -100,6 +100,17 @@ TEST(NewtonDirection, IsExactForEveryJointAtTheBase) {
                {}, "free base");
 }
 
+TEST(NewtonDirection, IsExactForARodBentAtRest) {
+  Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+  set_all_effects(scene);
+  scene.rods[0].rest_curvature = {0.8, -1.2, 0.6};
+  scene.rods[1].rest_curvature = {-0.5, 0, 1.1};
+  expect_exact(scene, {}, "statics");
+  Setting dynamics;
+  dynamics.mode = Mode::kGeneralizedAlpha;
+  expect_exact(scene, dynamics, "dynamics");
+}
+
 TEST(NewtonDirection, IsExactForEveryJointAtTheTip) {
   for (bool spin : {false, true})
     for (EndJoint joint : kHeld) {

@@ -86,6 +86,7 @@ Cell make_cell(const Case& c, unsigned seed) {
   put(cell.start.m, numbers.vec3());
   cell.stages.assign(static_cast<std::size_t>(table.stages), CellStage{});
   for (CellStage& s : cell.stages) {
+    // u0 carries the rest curvature besides the history of damping
     for (double* q : {s.u0, s.b, s.theta_h, s.omega_h, s.w})
       put(q, numbers.vec3());
     put(s.v0, Vec3::UnitZ() + 0.2 * numbers.vec3());

@@ -30,6 +30,22 @@ TEST(ShootingRod, StartsStraightFromItsBase) {
   }
 }
 
+TEST(ShootingRod, StartsInItsRestShape) {
+  Scene scene = grounded_rod(rod_end(EndJoint::kFixed, kWorld, kTop), RodEndSpec{});
+  const Vec3 u(1.5, -0.7, 2);
+  scene.rods[0].rest_curvature = u;
+  scene.solver.points = 30;
+  Robot robot = build_robot(scene);
+  const ShootingRod& rod = shooting(robot, 0);
+  const NodeState& tip = rod.node(rod.cells());
+  EXPECT_LT((rotation_of(tip) - kTop.R * exp_so3(u)).norm(), 1e-14);
+  Equations equations(robot, 1e-9);
+  equations.set_instant(0, true, StageRates{});
+  const Vec3 start = position_of(tip);
+  EXPECT_LT(equations.evaluate().largest, 1e-14);       // nothing acts: round-off
+  EXPECT_LT((position_of(tip) - start).norm(), 1e-12);  // the cells agree with the closed form
+}
+
 TEST(ShootingRod, PutsNodesWherePointLoadsAct) {
   Scene scene = grounded_rod(rod_end(EndJoint::kFixed, kWorld, Pose{}), RodEndSpec{});
   LoadSpec load;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an equilibrium looks like at a rod's quadrature points: all that the second variation of its
+// energy needs, whatever the method that found it.
+#pragma once
+
+#include <vector>
+
+#include "engine/math/types.h"
+#include "engine/rod/cell.h"
+
+namespace cprsim {
+
+/// One quadrature point; world axes.
+struct FieldPoint {
+  Mat3 R;     ///< section axes
+  Vec3 tau;   ///< centreline's derivative by arc length
+  Vec3 n, m;  ///< internal force, moment
+};
+
+/// Points are those of a Runge-Kutta collocation: cell by cell, table->stages each.
+struct RodField {
+  const ArcTableau* table = nullptr;
+  std::vector<double> cells;       ///< lengths, m
+  std::vector<FieldPoint> points;  ///< cells × stages
+  NodeState base{}, tip{};         ///< ends, before a load on the base and after one on the tip
+  Vec3 K_bt = Vec3::Zero();        ///< bending, bending, torsion, N m²
+  Vec3 K_se = Vec3::Zero();        ///< shear, shear, extension, N; 0 where the strain is not free
+  double rhoA = 0;
+  Vec3 rhoJ = Vec3::Zero();  ///< whether or not the scene lists rotary inertia
+};
+
+}  // namespace cprsim

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+
+RodField ShootingRod::field() const {
+  RodField f;
+  f.table = table_;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c)
+    f.cells.push_back((grid_[c + 1] - grid_[c]) * forcing_.length);
+  const auto vec = [](const double* x) { return Vec3(x[0], x[1], x[2]); };
+  for (const CellStage& stage : stages_) {
+    FieldPoint point;
+    point.R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(stage.R);
+    point.tau = vec(stage.tau);
+    point.n = vec(stage.n);
+    point.m = vec(stage.m);
+    f.points.push_back(point);
+  }
+  f.base = starts_.front();
+  f.tip = nodes_.back();
+  f.K_bt = section_.K_bt;
+  if (options_.shear) f.K_se.head<2>() = section_.K_se.head<2>();
+  if (options_.extension) f.K_se.z() = section_.K_se.z();
+  f.rhoA = section_.rhoA;
+  f.rhoJ = section_.rhoJ;
+  return f;
+}
+
+}  // namespace cprsim

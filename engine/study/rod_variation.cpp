@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/study/rod_variation.h"
+
+#include "engine/math/so3.h"
+
+namespace cprsim {
+namespace {
+
+using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+/// Coordinates: phi and d at the base, then per point psi and the free components of e.
+struct Layout {
+  std::vector<int> strains;  ///< components of e that are free
+  int per_point = 3;
+
+  explicit Layout(const RodField& field) {
+    for (int i = 0; i < 3; ++i)
+      if (field.K_se[i] > 0) strains.push_back(i);
+    per_point += static_cast<int>(strains.size());
+  }
+
+  Eigen::Index at(std::size_t point) const {
+    return 6 + static_cast<Eigen::Index>(point) * per_point;
+  }
+};
+
+/// Motion at one place as rows over all coordinates.
+struct Motion {
+  Rows3 phi, d;
+};
+
+}  // namespace
+
+RodVariation rod_variation(const RodField& field, bool rotary) {
+  const Layout layout(field);
+  const ArcTableau& table = *field.table;
+  const auto S = static_cast<std::size_t>(table.stages);
+  const Eigen::Index n = layout.at(field.points.size());
+  RodVariation out;
+  out.K = MatX::Zero(n, n);
+  out.M = MatX::Zero(n, n);
+  out.nodes.resize(6 * static_cast<Eigen::Index>(field.cells.size() + 1), n);
+  Motion node{Rows3::Zero(3, n), Rows3::Zero(3, n)};
+  node.phi.leftCols<3>().setIdentity();
+  node.d.middleCols<3>(3).setIdentity();
+  out.base.resize(6, n);
+  out.base << node.phi, node.d;
+  out.nodes.topRows<6>() = out.base;
+  std::vector<Rows3> d_s(S, Rows3::Zero(3, n));
+  for (std::size_t c = 0; c < field.cells.size(); ++c) {
+    const double h = field.cells[c];
+    // coordinates from here on do not matter yet: work on the columns up to this cell's end
+    const Eigen::Index active = layout.at((c + 1) * S);
+    std::vector<Rows3> phi(S);
+    for (std::size_t j = 0; j < S; ++j) {
+      const std::size_t at = c * S + j;
+      const FieldPoint& point = field.points[at];
+      phi[j] = node.phi.leftCols(active);
+      for (std::size_t k = 0; k < S; ++k)
+        phi[j].middleCols<3>(layout.at(c * S + k)).diagonal().array() += h * table.a[j][k];
+      d_s[j] = -hat(point.tau) * phi[j];
+      for (std::size_t e = 0; e < layout.strains.size(); ++e)
+        d_s[j].col(layout.at(at) + 3 + static_cast<Eigen::Index>(e)) +=
+            point.R.col(layout.strains[e]);
+    }
+    for (std::size_t j = 0; j < S; ++j) {
+      const std::size_t at = c * S + j;
+      const FieldPoint& point = field.points[at];
+      const double w = h * table.b[j];
+      Rows3 d = node.d.leftCols(active);
+      for (std::size_t k = 0; k < S; ++k)
+        d += h * table.a[j][k] * d_s[k];
+      // (1); a product a·B b enters as half of itself and its transpose
+      auto K = out.K.topLeftCorner(active, active);
+      const Eigen::Index psi = layout.at(at);
+      K.block<3, 3>(psi, psi) += w * point.R * field.K_bt.asDiagonal() * point.R.transpose();
+      const MatX twist = 0.5 * w * (hat(point.m).transpose() * phi[j]);  // rows of psi
+      K.middleRows<3>(psi) += twist;
+      K.middleCols<3>(psi) += twist.transpose();
+      for (std::size_t e = 0; e < layout.strains.size(); ++e) {
+        const Eigen::Index i = psi + 3 + static_cast<Eigen::Index>(e);
+        K(i, i) += w * field.K_se[layout.strains[e]];
+      }
+      const Mat3 outer = point.tau * point.n.transpose();
+      const Mat3 B = 0.5 * (outer + outer.transpose()) - point.n.dot(point.tau) * Mat3::Identity();
+      const Rows3 half = w * (0.5 * B * phi[j] + hat(point.n) * d_s[j]);
+      const MatX product = phi[j].transpose() * half;
+      K += product + product.transpose();
+      auto M = out.M.topLeftCorner(active, active);
+      M += (w * field.rhoA) * (d.transpose() * d);
+      if (rotary) {
+        const Rows3 spin = point.R.transpose() * phi[j];
+        M += w * (spin.transpose() * field.rhoJ.asDiagonal() * spin);
+      }
+    }
+    for (std::size_t k = 0; k < S; ++k) {
+      node.d.leftCols(active) += h * table.b[k] * d_s[k];
+      node.phi.middleCols<3>(layout.at(c * S + k)).diagonal().array() += h * table.b[k];
+    }
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(c + 1);
+    out.nodes.middleRows<3>(row) = node.phi;
+    out.nodes.middleRows<3>(row + 3) = node.d;
+  }
+  out.tip.resize(6, n);
+  out.tip << node.phi, node.d;
+  return out;
+}
+
+}  // namespace cprsim
