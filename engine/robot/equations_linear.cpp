@@ -220,7 +220,8 @@ bool Equations::solve_least_motion(const VecX& columns) {
   x_ = least_norm_solution(J_, J_ * present - r_, loops_ ? kSingularLoop : kSingularSystem);
   x_ -= present;
   // rows that say the same twice do so to round-off only, which near the solution is all there is
-  return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm() + 0.1 * tolerance_;
+  const double round_off = loops_ ? 0.1 * tolerance_ : 0;
+  return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm() + round_off;
 }
 
 bool Equations::solve(double mu) {
