@@ -5,21 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
+#include "engine/study/lowest_modes.h"
 #include "engine/study/robot_variation.h"
 
 namespace cprsim {
 namespace {
-
-/// A shift that makes K + shift M positive definite: none where the equilibrium is stable.
-double find_shift(const MatX& K, const MatX& M) {
-  if (is_positive_definite(K)) return 0;
-  double shift = 1e-6 * K.diagonal().cwiseAbs().maxCoeff() / M.diagonal().maxCoeff();
-  while (!is_positive_definite(K + shift * M) && std::isfinite(shift))
-    shift *= 10;
-  return shift;
-}
 
 VibrationMode expand(const RobotVariation& v, const VecX& x) {
   VibrationMode mode;
@@ -58,22 +49,15 @@ double VibrationMode::frequency() const {
   return omega_squared > 0 ? std::sqrt(omega_squared) / (2 * std::numbers::pi) : 0;
 }
 
-// M may be singular (no rotary inertia), K + shift M is not: M x = mu (K + shift M) x,
-// omega² = 1/mu - shift.
 std::vector<VibrationMode> natural_modes(const StaticStudy& study, int count) {
   const RobotVariation v = robot_variation(study.robot(), Inertia::kReal);
   MatX K, M;
   v.assemble(K, M);
+  const SymmetricModes lowest = lowest_modes(K, M);
   std::vector<VibrationMode> modes;
-  if (K.rows() == 0 || M.diagonal().maxCoeff() <= 0) return modes;
-  const double shift = find_shift(K, M);
-  const SymmetricModes all = symmetric_modes(M, K + shift * M);
-  const Eigen::Index n = all.values.size();
-  for (Eigen::Index i = n - 1; i >= 0 && static_cast<int>(modes.size()) < count; --i) {
-    const double mu = all.values[i];
-    if (mu <= 1e-14 * all.values[n - 1]) break;  // motions without inertia
-    VibrationMode mode = expand(v, all.vectors.col(i) / std::sqrt(mu));
-    mode.omega_squared = 1 / mu - shift;
+  for (Eigen::Index i = 0; i < lowest.values.size() && i < count; ++i) {
+    VibrationMode mode = expand(v, lowest.vectors.col(i));
+    mode.omega_squared = lowest.values[i];
     modes.push_back(std::move(mode));
   }
   return modes;

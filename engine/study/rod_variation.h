@@ -18,10 +18,10 @@
 namespace cprsim {
 
 struct RodVariation {
-  MatX K;          ///< twice (1)'s half: x^T K x is (1)
-  MatX M;          ///< x_t^T M x_t is twice the kinetic energy
-  MatX base;       ///< 6 × n: (phi, d) at the base
-  MatX tip;        ///< 6 × n
+  MatX K;      ///< twice (1)'s half: x^T K x is (1)
+  MatX M;      ///< x_t^T M x_t is twice the kinetic energy
+  MatX base;   ///< 6 × n: (phi, d) at the base
+  MatX tip;    ///< 6 × n
   MatX nodes;  ///< 6 (cells + 1) × n: (phi, d) at the cells' ends, for shapes of modes
 
   Eigen::Index size() const { return K.rows(); }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/math/linear_solve.h"
+#include "engine/study/lowest_modes.h"
 #include "engine/study/robot_variation.h"
 
 namespace cprsim {
@@ -35,7 +36,7 @@ StabilityVerdict verdict_of(int negative, int none) {
 VecX held_stiffnesses(const ReducedRod& rod) {
   const Eigen::Index k = rod.inner;
   if (k == 0) return VecX(0);
-  return symmetric_modes(rod.K.topLeftCorner(k, k), rod.M.topLeftCorner(k, k)).values;
+  return lowest_modes(rod.K.topLeftCorner(k, k), rod.M.topLeftCorner(k, k)).values;
 }
 
 double nothing_of(const Robot& robot) {
@@ -66,7 +67,8 @@ Stability judge(const StaticStudy& study) {
   MatX K, M;
   v.assemble(K, M);
   if (K.rows() == 0) return out;
-  const SymmetricModes modes = symmetric_modes(K, M);
+  const SymmetricModes modes = lowest_modes(K, M);
+  if (modes.values.size() == 0) return out;
   const Signs all = signs(modes.values, nothing);
   out.unstable = all.negative;
   out.verdict = verdict_of(all.negative, all.none);
@@ -86,8 +88,7 @@ MatX condensed_stiffness(const RobotVariation& v) {
     MatX own = rod.K.bottomRightCorner<12, 12>();
     if (k > 0) {
       const MatX coupling = rod.K.topRightCorner(k, 12);
-      own -= coupling.transpose() *
-             solve_columns(rod.K.topLeftCorner(k, k), coupling);
+      own -= coupling.transpose() * solve_columns(rod.K.topLeftCorner(k, k), coupling);
     }
     const int bodies[2] = {rod.base_body, rod.tip_body};
     for (int i = 0; i < 2; ++i)
@@ -118,7 +119,8 @@ Stability count_unstable(const StaticStudy& study) {
     for (std::size_t b = 0; b < robot.bodies.size(); ++b)
       unit.segment<3>(6 * static_cast<Eigen::Index>(b)).setConstant(1 / robot.scale.length);
     const MatX F = v.free();
-    const MatX scaled = F.transpose() * unit.asDiagonal() * out.body_stiffness * unit.asDiagonal() * F;
+    const MatX scaled =
+        F.transpose() * unit.asDiagonal() * out.body_stiffness * unit.asDiagonal() * F;
     if (F.cols() > 0) {
       const SymmetricModes modes = symmetric_modes(scaled, MatX::Identity(F.cols(), F.cols()));
       const Signs own = signs(modes.values, nothing);

@@ -146,7 +146,7 @@ TEST(Stability, StiffnessOfThePublishedRobotIsTheDerivativeOfItsReactions) {
   // a small force moves the plate by K^-1 times it
   const Pose home = study.robot().body_pose(0);
   for (std::size_t c = 0; c < 3; ++c) {
-    const double force = 1e-4;
+    const double force = 1e-3;
     const Parameter push = study.probe(0)[c];
     Vec6 moved[2];
     for (int k = 0; k < 2; ++k) {
@@ -160,7 +160,7 @@ TEST(Stability, StiffnessOfThePublishedRobotIsTheDerivativeOfItsReactions) {
     const Vec6 change = (moved[1] - moved[0]) / 2;
     Vec6 expected = Vec6::Zero();
     expected[3 + static_cast<Eigen::Index>(c)] = force;
-    EXPECT_LT((K * change - expected).norm(), 1e-6 * force + 1e-9) << c;
+    EXPECT_LT((K * change - expected).norm(), 1e-5 * force) << c;
   }
 }
 
