@@ -16,8 +16,9 @@ enum class DriveQuantity { kPosition, kVelocity, kEffort, kLength };
 struct DriveSpec {
   Place place;
   DriveQuantity quantity = DriveQuantity::kPosition;
-  int joint = -1;  ///< index into Scene::joints, or
-  int rod = -1;    ///< index into Scene::rods (length)
+  int joint = -1;   ///< index into Scene::joints, or
+  int rod = -1;     ///< index into Scene::rods (length)
+  int freedom = 0;  ///< which coordinate of the joint, from 0
   Profile profile;
 };
 

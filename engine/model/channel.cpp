@@ -131,11 +131,23 @@ class List {
 };
 
 void add_joint(List& list, const JointSpec& joint) {
-  if (joint.kind == JointKind::kFixed) return;
-  const bool slides = joint.kind == JointKind::kPrismatic;
-  list.add("position", Quantity::kJointPosition, 0, slides ? "m" : "rad");
-  list.add("velocity", Quantity::kJointVelocity, 0, slides ? "m/s" : "rad/s");
-  list.add("effort", Quantity::kJointEffort, 0, slides ? "N" : "N m");
+  const bool ball = joint.kind == JointKind::kBall;
+  const int count = ball ? 3 : freedom_count(joint.kind);
+  const auto add = [&](const char* name, Quantity quantity, const char* turn, const char* slide) {
+    for (int i = 0; i < count; ++i) {
+      std::string suffix = name;
+      if (ball) suffix += std::string(".") + kAxes[i];
+      if (!ball && count > 1) suffix += "." + std::to_string(i + 1);
+      list.add(suffix, quantity, i, slides(joint.kind, i) ? slide : turn);
+    }
+  };
+  add("position", Quantity::kJointPosition, "rad", "m");
+  add("velocity", Quantity::kJointVelocity, "rad/s", "m/s");
+  add("effort", Quantity::kJointEffort, "N m", "N");
+  bool limited = false;
+  for (int i = 0; i < freedom_count(joint.kind); ++i)
+    limited = limited || axis_of(joint, i).limited();
+  if (limited) add("limit", Quantity::kJointLimit, "N m", "N");
 }
 
 void add_sums(List& list, ChannelEntity kind) {

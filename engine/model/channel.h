@@ -26,6 +26,7 @@ enum class Quantity {
   kJointPosition,
   kJointVelocity,
   kJointEffort,
+  kJointLimit,  ///< effort of the stops at the limits
   kEnergyKinetic,
   kEnergyElastic,
   kEnergyGravity,

@@ -122,10 +122,6 @@ void add_joints(Robot& robot) {
       robot.joint_of_spec.push_back(-1);
       continue;
     }
-    if (spec.kind != JointKind::kRevolute && spec.kind != JointKind::kContinuous &&
-        spec.kind != JointKind::kPrismatic)
-      throw std::invalid_argument("joint '" + spec.name +
-                                  "' is of a type this version cannot simulate");
     const Attachment parent = attach(robot, {spec.parent, spec.X_PJ}),
                      child = attach(robot, {spec.child, spec.X_CJ});
     robot.joint_of_spec.push_back(static_cast<int>(robot.joints.size()));
@@ -200,9 +196,14 @@ void add_actions(Robot& robot) {
     const int index = robot.joint_of_spec[static_cast<std::size_t>(drive.joint)];
     if (index < 0) continue;
     Joint& joint = robot.joints[static_cast<std::size_t>(index)];
-    if (drive.quantity == DriveQuantity::kPosition) joint.motion = Joint::Motion::kPosition;
-    if (drive.quantity == DriveQuantity::kVelocity) joint.motion = Joint::Motion::kVelocity;
-    robot.joint_drives.push_back({index, &drive});
+    if (drive.freedom < 0 || drive.freedom >= static_cast<int>(joint.freedoms.size()))
+      throw std::invalid_argument("joint '" + joint.spec->name + "' has no axis " +
+                                  std::to_string(drive.freedom + 1) + " to drive");
+    Joint::Freedom& freedom = joint.freedoms[static_cast<std::size_t>(drive.freedom)];
+    if (drive.quantity == DriveQuantity::kPosition) freedom.motion = Joint::Motion::kPosition;
+    if (drive.quantity == DriveQuantity::kVelocity) freedom.motion = Joint::Motion::kVelocity;
+    joint.count_unknowns();
+    robot.joint_drives.push_back({index, drive.freedom, &drive});
   }
   for (const LoadSpec& load : scene.loads)
     if (load.rod < 0) {
@@ -229,13 +230,15 @@ std::vector<int> carried_by(const Robot& robot, std::size_t through) {
 // A driven joint need not stand at 0 when the scene begins: what it carries is moved to where the
 // drive wants it. Closed rigid loops are left to the solver.
 void place_driven_bodies(Robot& robot) {
-  for (const JointDrive& drive : robot.joint_drives) {
-    if (drive.spec->quantity != DriveQuantity::kPosition) continue;
-    Joint& joint = robot.joints[static_cast<std::size_t>(drive.joint)];
-    joint.q = drive.spec->profile.evaluate(0, true).value;
-    if (joint.child < 0) continue;
+  for (const JointDrive& drive : robot.joint_drives)
+    if (drive.spec->quantity == DriveQuantity::kPosition)
+      robot.joints[static_cast<std::size_t>(drive.joint)].q[drive.freedom] =
+          drive.spec->profile.evaluate(0, true).value;
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const Joint& joint = robot.joints[j];
+    if (joint.q.isZero(0) || joint.child < 0) continue;
     const Pose moved = joint.displacement(robot.body_pose(joint.parent));
-    for (int b : carried_by(robot, static_cast<std::size_t>(drive.joint))) {
+    for (int b : carried_by(robot, j)) {
       RigidBody& body = robot.bodies[static_cast<std::size_t>(b)];
       const Pose X = moved * body.pose();
       body.R = orthonormalized(X.R);
@@ -282,6 +285,8 @@ Robot build_robot(const Scene& scene) {
   place_driven_bodies(robot);
   add_rods(robot);
   robot.scale = choose_scale(robot);
+  for (Joint& joint : robot.joints)
+    joint.set_scale(robot.scale.length, robot.scale.moment(), robot.scale.force);
   return robot;
 }
 
@@ -304,14 +309,43 @@ Pose Robot::link_pose(std::size_t link) const {
   return place.body < 0 ? place.X : bodies[static_cast<std::size_t>(place.body)].pose() * place.X;
 }
 
+bool Robot::has_joint_loops() const {
+  // each joint joins two groups that were apart, or closes a loop; the ground is the last element
+  std::vector<std::size_t> group(bodies.size() + 1);
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  const auto of = [&](int body) {
+    return group[body < 0 ? bodies.size() : static_cast<std::size_t>(body)];
+  };
+  for (const Joint& joint : joints) {
+    const std::size_t a = of(joint.parent), b = of(joint.child);
+    if (a == b) return true;
+    std::replace(group.begin(), group.end(), a, b);
+  }
+  return false;
+}
+
+void Robot::start_joints(const std::vector<Vec6>& motions) {
+  for (Joint& joint : joints) {
+    const Pose P = body_pose(joint.parent), C = body_pose(joint.child);
+    const auto velocity_at = [&](int body, const Pose& X) {
+      Vec6 v = body < 0 ? Vec6(Vec6::Zero()) : motions[static_cast<std::size_t>(body)];
+      v.tail<3>() += v.head<3>().cross(joint.place(C) - X.p);
+      return v;
+    };
+    joint.start_tracks(P, C, velocity_at(joint.child, C) - velocity_at(joint.parent, P));
+  }
+}
+
 std::vector<Track*> Robot::tracks() {
   std::vector<Track*> all;
   for (RigidBody& body : bodies) {
     all.push_back(&body.position);
     all.push_back(&body.rotation);
   }
-  for (Joint& joint : joints)
+  for (Joint& joint : joints) {
     all.push_back(&joint.track);
+    if (joint.is_ball()) all.push_back(&joint.spin);
+  }
   for (RobotRod& rod : rods)
     for (Track* track : rod.model->tracks())
       all.push_back(track);

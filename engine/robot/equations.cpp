@@ -24,6 +24,7 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
     offset += joint.unknowns();
   }
   size_ = offset;
+  loops_ = robot.has_joint_loops();
 }
 
 PointLoad Equations::scaled_load(const LoadSpec& load) const {
@@ -53,24 +54,45 @@ void Equations::set_instant(double t, bool before, const StageRates& rates) {
   t_ = t;
   before_ = before;
   rates_ = rates;
-  for (const JointDrive& drive : robot_.joint_drives) {
-    Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
-    const ProfileValue value = drive.spec->profile.evaluate(t, before);
-    switch (drive.spec->quantity) {
-      case DriveQuantity::kPosition:
-        joint.q = value.value;
-        break;
-      case DriveQuantity::kEffort:
-        joint.effort = value.value;
-        break;
-      case DriveQuantity::kVelocity:
-        if (rates.dynamic()) joint.q = (value.value - joint.track.x_h[0]) / rates.c_v;
-        break;
-      case DriveQuantity::kLength:
-        break;
-    }
-  }
+  for (const JointDrive& drive : robot_.joint_drives)
+    drive_joint(drive);
   prepare_rods();
+}
+
+void Equations::drive_joint(const JointDrive& drive) {
+  Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
+  const auto i = static_cast<Eigen::Index>(drive.freedom);
+  Joint::Freedom& freedom = joint.freedoms[static_cast<std::size_t>(drive.freedom)];
+  const Profile& profile = drive.spec->profile;
+  const double value = profile.evaluate(t_, before_).value, limit = freedom.spec->effort_limit;
+  switch (drive.spec->quantity) {
+    case DriveQuantity::kPosition:
+      joint.q[i] = value;
+      break;
+    case DriveQuantity::kEffort:
+      freedom.effort = std::clamp(value, -limit, limit);
+      break;
+    case DriveQuantity::kVelocity:
+      if (rates_.dynamic()) {
+        joint.q[i] = (value - joint.track.x_h[i]) / rates_.c_v;
+      } else if (t_ > equilibrium_time_) {
+        // Simpson's rule over the step, which has no jump inside
+        const double from = equilibrium_time_, h = t_ - from;
+        joint.q[i] =
+            joint.accepted_q()[i] + h / 6 *
+                                        (profile.evaluate(from, false).value +
+                                         4 * profile.evaluate(from + 0.5 * h, false).value + value);
+      }
+      break;
+    case DriveQuantity::kLength:
+      break;
+  }
+}
+
+void Equations::accept_equilibrium(double t) {
+  equilibrium_time_ = t;
+  for (Joint& joint : robot_.joints)
+    joint.accept(body_pose(joint.parent), body_pose(joint.child));
 }
 
 void Equations::set_fraction(double fraction) {
@@ -154,7 +176,7 @@ void Equations::set_unknowns(const RobotUnknowns& u) {
     robot_.bodies[i].p = u.bodies[i].p;
   }
   for (std::size_t i = 0; i < u.joint_q.size(); ++i) {
-    if (robot_.joints[i].q_unknown()) robot_.joints[i].q = u.joint_q[i];
+    robot_.joints[i].set_unknown_q(u.joint_q[i]);
     robot_.joints[i].lambda = u.joint_lambda[i];
   }
 }
@@ -179,13 +201,13 @@ void Equations::predict(const std::vector<const RobotUnknowns*>& past,
   }
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     Joint& joint = robot_.joints[j];
-    double q = 0;
+    Vec3 q = Vec3::Zero();
     joint.lambda.setZero();
     for (std::size_t i = 0; i < past.size(); ++i) {
       q += weights[i] * past[i]->joint_q[j];
       joint.lambda += weights[i] * past[i]->joint_lambda[j];
     }
-    if (joint.q_unknown()) joint.q = q;
+    joint.set_unknown_q(q);
   }
 }
 
@@ -301,7 +323,10 @@ ProblemResidual Equations::evaluate() {
     for (int i = 0; i < 6; ++i)
       note(rows.closure[i] - open * joint_gap_[j][i], {Worst::Kind::kJoint, static_cast<int>(j), i},
            r);
-    if (joint.q_unknown()) note(rows.effort, {Worst::Kind::kJoint, static_cast<int>(j), 6}, r);
+    for (std::size_t k = 0; k < joint.freedoms.size(); ++k)
+      if (joint.freedoms[k].unknown >= 0)
+        note(rows.effort[static_cast<Eigen::Index>(k)],
+             {Worst::Kind::kJoint, static_cast<int>(j), 6 + static_cast<int>(k)}, r);
   }
   return r;
 }
@@ -330,7 +355,11 @@ void Equations::move(double alpha) {
     Joint& joint = robot_.joints[j];
     const Eigen::Index at = joint_offset_[j];
     joint.lambda = kept_.joint_lambda[j] + alpha * x_.segment<6>(at);
-    if (joint.q_unknown()) joint.q = kept_.joint_q[j] + alpha * x_[at + 6];
+    for (std::size_t k = 0; k < joint.freedoms.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      const int unknown = joint.freedoms[k].unknown;
+      if (unknown >= 0) joint.q[i] = kept_.joint_q[j][i] + alpha * x_[at + 6 + unknown];
+    }
   }
   for (RobotRod& rod : robot_.rods)
     rod.model->move(alpha);
@@ -339,8 +368,9 @@ void Equations::move(double alpha) {
 std::string Equations::worst_row() const {
   static const char* const kWrench[] = {"moment x", "moment y", "moment z",
                                         "force x",  "force y",  "force z"};
-  static const char* const kClosure[] = {"rotation x", "rotation y", "rotation z", "position x",
-                                         "position y", "position z", "effort"};
+  static const char* const kClosure[] = {"rotation x", "rotation y", "rotation z",
+                                         "position x", "position y", "position z",
+                                         "effort",     "effort 2",   "effort 3"};
   const auto i = static_cast<std::size_t>(worst_.index);
   switch (worst_.kind) {
     case Worst::Kind::kBody: {

@@ -25,7 +25,7 @@ namespace cprsim {
 struct RobotUnknowns {
   std::vector<RodModel::Unknowns> rods;
   std::vector<Pose> bodies;
-  std::vector<double> joint_q;
+  std::vector<Vec3> joint_q;
   std::vector<Vec6> joint_lambda;
 };
 
@@ -39,6 +39,10 @@ class Equations final : public Problem {
   /// Sets drives, loads and time coefficients for the solves that follow. `before`: left limits at
   /// jumps.
   void set_instant(double t, bool before, const StageRates& rates);
+
+  /// Quasi-statics: the present state is the equilibrium at t. Joints driven by velocity go on from
+  /// here, friction holds on to where it has slipped to.
+  void accept_equilibrium(double t);
 
   /// Without loads, gravity and effort drives: only assembly.
   void set_loads(bool on) { loads_on_ = on; }
@@ -114,6 +118,7 @@ class Equations final : public Problem {
   Vec6 body_rows(std::size_t b);
   void add_rod_wrenches();
   void add_joint_wrenches();
+  void drive_joint(const JointDrive& drive);
   void add_body_loads();
   void note(double value, Worst where, ProblemResidual& r);
 
@@ -125,7 +130,7 @@ class Equations final : public Problem {
   void assemble_bodies();
   void assemble_joints();
   bool solve(double mu);
-  bool solve_least_motion();
+  bool solve_least_motion(const VecX& columns);
   void distribute();
   double force_unit(int body) const;
   VecX column_units() const;
@@ -135,10 +140,12 @@ class Equations final : public Problem {
   double tolerance_;
   double t_ = 0;
   bool before_ = false;
+  double equilibrium_time_ = 0;  ///< of the last accepted one
   StageRates rates_;
   double fraction_ = 1, drag_ = 0, softness_ = 0;
   bool bodies_held_ = false;
   bool gaps_captured_ = false;
+  bool loops_ = false;  ///< joints form closed loops
   bool loads_on_ = true;
 
   // residual side

@@ -19,6 +19,10 @@ constexpr double kSingularPivot = 1e-10;
 // Likewise for the global system, and how well its rows must then be met.
 constexpr double kSingularSystem = 1e-13, kConsistent = 1e-6;
 
+// Joints that close a loop may say the same twice (a planar four-bar thrice), up to round-off that
+// elimination has magnified. Taken for a pivot it would throw the multipliers about.
+constexpr double kSingularLoop = 1e-12;
+
 }  // namespace
 
 bool Equations::condense_rods(bool keep_all) {
@@ -133,12 +137,20 @@ void Equations::assemble_joints() {
       J_.block<6, 6>(c, c) += w.child_by_child;
     }
     if (joint.parent >= 0 && joint.child >= 0) J_.block<6, 6>(p, c) += w.parent_by_child;
-    if (!joint.q_unknown()) continue;
-    J_.block<6, 1>(at, at + 6) = rows.by_q;
-    J_.block<1, 6>(at + 6, at) = rows.effort_by_lambda;
-    if (joint.parent >= 0) J_.block<1, 6>(at + 6, p) = rows.effort_by_parent;
-    J_(at + 6, at + 6) = rows.effort_by_q;
-    r_[at + 6] = rows.effort;
+    J_.block<6, 6>(at, at) = rows.by_lambda;
+    for (std::size_t k = 0; k < joint.freedoms.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      if (joint.freedoms[k].unknown < 0) continue;
+      const Eigen::Index row = at + 6 + joint.freedoms[k].unknown;
+      J_.block<6, 1>(at, row) = rows.by_q.col(i);
+      J_.block<1, 6>(row, at) = rows.effort_by_lambda.row(i);
+      if (joint.parent >= 0) J_.block<1, 6>(row, p) = rows.effort_by_parent.row(i);
+      for (std::size_t l = 0; l < joint.freedoms.size(); ++l)
+        if (joint.freedoms[l].unknown >= 0)
+          J_(row, at + 6 + joint.freedoms[l].unknown) =
+              rows.effort_by_q(i, static_cast<Eigen::Index>(l));
+      r_[row] = rows.effort[i];
+    }
   }
 }
 
@@ -170,7 +182,9 @@ VecX Equations::column_units() const {
     const double force = std::max(force_unit(joint.parent), force_unit(joint.child));
     u.segment<3>(at).setConstant(force * length);
     u.segment<3>(at + 3).setConstant(force);
-    if (joint.q_unknown() && joint.freedom == Joint::Freedom::kPrismatic) u[at + 6] = length;
+    for (const Joint::Freedom& freedom : joint.freedoms)
+      if (freedom.unknown >= 0 && freedom.measured_as_length())
+        u[at + 6 + freedom.unknown] = length;
   }
   return u;
 }
@@ -186,18 +200,28 @@ VecX Equations::row_units() const {
   // effort rows are in units of the robot's force; their multiplier's column may be larger
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const Joint& joint = robot_.joints[j];
-    if (!joint.q_unknown()) continue;
     const double force = std::max(force_unit(joint.parent), force_unit(joint.child));
-    u[joint_offset_[j] + 6] = force / robot_.scale.force;
+    u.segment(joint_offset_[j] + 6, joint.unknown_coordinates())
+        .setConstant(force / robot_.scale.force);
+    if (joint.is_ball()) u.segment<3>(joint_offset_[j]).setConstant(force / robot_.scale.force);
   }
   return u;
 }
 
 // Something moves without resistance, like a rod that can spin between two balls. If the rows can
 // be met all the same, the smallest motion that does so is as good as any.
-bool Equations::solve_least_motion() {
-  x_ = -least_norm_solution(J_, r_, kSingularSystem);
-  return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm();
+// Multipliers that rows said twice leave open become the smallest ones: by themselves, not their
+// increments, or what extrapolation in time adds to them would stay and grow.
+bool Equations::solve_least_motion(const VecX& columns) {
+  VecX present = VecX::Zero(size_);
+  for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j)
+    present.segment<6>(joint_offset_[j]) = robot_.joints[j].lambda;
+  present = columns.cwiseInverse().asDiagonal() * present;
+  x_ = least_norm_solution(J_, J_ * present - r_, loops_ ? kSingularLoop : kSingularSystem);
+  x_ -= present;
+  // rows that say the same twice do so to round-off only, which near the solution is all there is
+  const double round_off = loops_ ? 0.1 * tolerance_ : 0;
+  return x_.allFinite() && (J_ * x_ + r_).norm() <= kConsistent * r_.norm() + round_off;
 }
 
 bool Equations::solve(double mu) {
@@ -208,9 +232,9 @@ bool Equations::solve(double mu) {
   J_ = rows.cwiseInverse().asDiagonal() * J_ * columns.asDiagonal();
   r_ = rows.cwiseInverse().asDiagonal() * r_;
   if (mu == 0) {
-    if (solve_square(J_, r_, kSingularSystem, x_)) {
+    if (solve_square(J_, r_, loops_ ? kSingularLoop : kSingularSystem, x_)) {
       x_ = -x_;
-    } else if (!solve_least_motion()) {
+    } else if (!solve_least_motion(columns)) {
       return false;
     }
   } else {

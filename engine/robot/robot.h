@@ -48,7 +48,8 @@ struct BodyLoad {
 };
 
 struct JointDrive {
-  int joint = -1;  ///< index into Robot::joints
+  int joint = -1;   ///< index into Robot::joints
+  int freedom = 0;  ///< of that joint
   const DriveSpec* spec = nullptr;
 };
 
@@ -80,6 +81,12 @@ struct Robot {
 
   Port port(const Attachment& a) const;
   Pose link_pose(std::size_t link) const;
+
+  /// Whether joints alone, without rods, join bodies and ground into a closed loop.
+  bool has_joint_loops() const;
+
+  /// Joints begin to move as their bodies do: (omega, velocity of the centre of mass), world axes.
+  void start_joints(const std::vector<Vec6>& motions);
 
   /// Everything a time scheme integrates.
   std::vector<Track*> tracks();

@@ -5,6 +5,7 @@
 #include "engine/model/scene.h"
 #include "engine/robot/equations.h"
 #include "engine/run/simulation.h"
+#include "engine/solve/newton.h"
 #include "engine/time/scheme.h"
 
 namespace cprsim {
@@ -17,6 +18,10 @@ struct StepPlan {
 };
 
 StepPlan plan_steps(const Scene& scene);
+
+/// Of equilibria: one point to get right, with more iterations than a time step may have.
+SolveOptions static_options(const SolverSpec& spec);
+SolveOptions step_options(const SolverSpec& spec);
 
 ProblemFacts problem_facts(const Robot& robot, const Equations& equations, const StepPlan& plan);
 

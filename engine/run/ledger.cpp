@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/run/ledger.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/math/so3.h"
@@ -36,16 +37,18 @@ double EnergyLedger::drive_power(double t, bool before) const {
       power += rod.model->energy().feed_power * rod.length_drive->evaluate(t, before).rate;
   for (const JointDrive& drive : robot_.joint_drives) {
     const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
+    const Joint::Freedom& freedom = joint.freedoms[static_cast<std::size_t>(drive.freedom)];
+    const auto i = static_cast<Eigen::Index>(drive.freedom);
     const ProfileValue value = drive.spec->profile.evaluate(t, before);
     if (drive.spec->quantity == DriveQuantity::kEffort) {
-      power += value.value * joint.track.v[0];
+      power += joint_effort(drive, t, before) * joint.track.v[i];
       continue;
     }
     const double rate = drive.spec->quantity == DriveQuantity::kVelocity ? value.value : value.rate;
-    // lambda carries spring and damper too, which are not the drive's
-    const double effort =
-        joint.axial_effort(robot_.body_pose(joint.parent)) + joint.passive_effort(rate);
-    power += effort * rate;
+    // lambda carries springs, dampers and the like too, which are not the drive's
+    const double along =
+        joint.observe(robot_.body_pose(joint.parent), robot_.body_pose(joint.child)).effort[i];
+    power += (along - freedom.law.total(*freedom.spec, joint.q[i], rate).value) * rate;
   }
   return power;
 }
@@ -57,11 +60,8 @@ void EnergyLedger::sum_up() {
     e.kinetic += body.kinetic_energy();
     e.gravity -= body.gravity_mass * robot_.gravity.dot(body.p + body.R * body.gravity_arm);
   }
-  for (const Joint& joint : robot_.joints) {
-    const double stretch = joint.q - joint.spec->spring_reference;
-    if (joint.freedom != Joint::Freedom::kNone)
-      e.elastic += 0.5 * joint.spec->spring_stiffness * stretch * stretch;
-  }
+  for (const Joint& joint : robot_.joints)
+    e.elastic += joint.stored_energy() + joint.friction_energy();
   for (const RobotRod& rod : robot_.rods) {
     const RodEnergy own = rod.model->energy();
     e.kinetic += own.kinetic;
@@ -87,8 +87,7 @@ double EnergyLedger::damping_power() const {
   for (const RobotRod& rod : robot_.rods)
     power += rod.model->energy().damping_power;
   for (const Joint& joint : robot_.joints)
-    if (joint.freedom != Joint::Freedom::kNone)
-      power += joint.spec->damping * joint.track.v[0] * joint.track.v[0];
+    power += joint.loss();
   return power;
 }
 
@@ -103,6 +102,39 @@ void EnergyLedger::open() {
 void EnergyLedger::begin_step(double t) {
   collect(t, false);
   points_before_ = points_;
+  begun_ = t;
+  friction_before_.clear();
+  q_before_.clear();
+  for (const Joint& joint : robot_.joints) {
+    friction_before_.push_back(joint.friction_effort());
+    q_before_.push_back(joint.q);
+  }
+  friction_energy_before_ = friction_energy();
+}
+
+double EnergyLedger::joint_effort(const JointDrive& drive, double t, bool before) const {
+  const double limit = robot_.joints[static_cast<std::size_t>(drive.joint)]
+                           .freedoms[static_cast<std::size_t>(drive.freedom)]
+                           .spec->effort_limit;
+  return std::clamp(drive.spec->profile.evaluate(t, before).value, -limit, limit);
+}
+
+double EnergyLedger::effort_work(double t) const {
+  double work = 0;
+  for (const JointDrive& drive : robot_.joint_drives) {
+    if (drive.spec->quantity != DriveQuantity::kEffort) continue;
+    const auto j = static_cast<std::size_t>(drive.joint);
+    work += 0.5 * (joint_effort(drive, begun_, false) + joint_effort(drive, t, true)) *
+            (robot_.joints[j].q[drive.freedom] - q_before_[j][drive.freedom]);
+  }
+  return work;
+}
+
+double EnergyLedger::friction_energy() const {
+  double energy = 0;
+  for (const Joint& joint : robot_.joints)
+    energy += joint.friction_energy();
+  return energy;
 }
 
 void EnergyLedger::close_step(double t, double damping_loss, double drive_work) {
@@ -115,6 +147,13 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work) 
   }
   sample_.work += drive_work;
   sample_.dissipated += damping_loss;
+  // what friction takes, less what its elastic range still holds
+  for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
+    const Joint& joint = robot_.joints[j];
+    sample_.dissipated -=
+        0.5 * (friction_before_[j] + joint.friction_effort()).dot(joint.q - q_before_[j]);
+  }
+  sample_.dissipated -= friction_energy() - friction_energy_before_;
   sum_up();
 }
 

@@ -32,6 +32,10 @@ class EnergyLedger {
   /// Power that drives of joints and of rod lengths put in at time t in the present state, W.
   double drive_power(double t, bool before) const;
 
+  /// Work of effort drives since begin_step, trapezoidal in the displacement: for quasi-statics,
+  /// where nothing has a rate.
+  double effort_work(double t) const;
+
   const EnergySample& sample() const { return sample_; }
 
  private:
@@ -41,12 +45,18 @@ class EnergyLedger {
   };
 
   void collect(double t, bool before);
+  double friction_energy() const;
   void sum_up();
 
   const Robot& robot_;
   const FreeBodies* free_bodies_;
   std::vector<Point> points_, points_before_;
   EnergySample sample_;
+  double joint_effort(const JointDrive& drive, double t, bool before) const;
+
+  std::vector<Vec3> friction_before_, q_before_;  ///< of joints
+  double begun_ = 0;
+  double friction_energy_before_ = 0;
   double start_ = 0;
   double free_energy_ = 0;
   bool free_energy_known_ = false;

@@ -94,7 +94,7 @@ void Marcher::finish_stage(int i) {
   for (RigidBody& body : robot_.bodies)
     body.fill_tracks(rates_);
   for (Joint& joint : robot_.joints)
-    joint.track.x[0] = joint.q;
+    joint.fill_tracks(robot_.body_pose(joint.parent), robot_.body_pose(joint.child), rates_);
   for (RobotRod& rod : robot_.rods)
     rod.model->fill_tracks();
   stepper_.finish_stage(i, tracks_);
@@ -155,6 +155,8 @@ void Marcher::accept() {
   stepper_.accept(tracks_);
   for (RigidBody& body : robot_.bodies)
     body.accept_tracks();
+  for (Joint& joint : robot_.joints)
+    joint.accept(robot_.body_pose(joint.parent), robot_.body_pose(joint.child));
   for (RobotRod& rod : robot_.rods)
     rod.model->accept_tracks();
   while (past_.size() > kPastKept)

@@ -28,9 +28,9 @@ Snapshot take_snapshot(const Robot& robot, const FreeBodies* free_bodies, double
     JointSample sample;
     if (const int index = robot.joint_of_spec[i]; index >= 0) {
       const Joint& joint = robot.joints[static_cast<std::size_t>(index)];
-      sample.position = joint.q;
-      sample.velocity = joint.track.v[0];
-      sample.effort = joint.axial_effort(robot.body_pose(joint.parent));
+      const Joint::Observed seen =
+          joint.observe(robot.body_pose(joint.parent), robot.body_pose(joint.child));
+      sample = {seen.position, seen.velocity, seen.effort, seen.stop};
     }
     now.joints.push_back(sample);
   }

@@ -56,12 +56,11 @@ BodySample body_between(const BodySample& a, const BodySample& b, const Between&
 }
 
 JointSample joint_between(const JointSample& a, const JointSample& b, const Between& at) {
-  const bool at_rest = a.velocity == 0 && b.velocity == 0;
   JointSample joint;
-  joint.position = at_rest ? at(a.position, b.position)
-                           : at.hermite<double>(a.position, a.velocity, b.position, b.velocity);
+  joint.position = at.moved(a.position, a.velocity, b.position, b.velocity);
   joint.velocity = at(a.velocity, b.velocity);
   joint.effort = at(a.effort, b.effort);
+  joint.limit = at(a.limit, b.limit);
   return joint;
 }
 
@@ -144,11 +143,13 @@ double value_of(const Channel& channel, const BodySample& body) {
 double value_of(const Channel& channel, const JointSample& joint) {
   switch (channel.quantity) {
     case Quantity::kJointPosition:
-      return joint.position;
+      return joint.position[channel.component];
     case Quantity::kJointVelocity:
-      return joint.velocity;
+      return joint.velocity[channel.component];
     case Quantity::kJointEffort:
-      return joint.effort;
+      return joint.effort[channel.component];
+    case Quantity::kJointLimit:
+      return joint.limit[channel.component];
     default:
       no_such_quantity(channel);
   }

@@ -24,22 +24,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A static solve has one point to get right; more iterations than a time step may have.
-SolveOptions static_options(const SolverSpec& spec) {
-  SolveOptions options;
-  options.tolerance = spec.residual_tolerance.value_or(options.tolerance);
-  options.max_iterations = std::max(40, spec.max_iterations.value_or(0));
-  return options;
-}
-
-SolveOptions step_options(const SolverSpec& spec) {
-  SolveOptions options;
-  options.tolerance = spec.residual_tolerance.value_or(options.tolerance);
-  options.max_iterations = spec.max_iterations.value_or(15);
-  options.polish = true;
-  return options;
-}
-
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", x);
@@ -170,8 +154,7 @@ struct Simulation::Parts {
       motions.push_back(motion);
       moving = moving || link.velocity_given;
     }
-    for (Joint& joint : robot.joints)
-      joint.track.set_start(VecX::Constant(1, joint.q), VecX::Zero(1));
+    robot.start_joints(motions);
     if (moving) moving = equations.follow_bodies(motions);
     for (RobotRod& rod : robot.rods) {
       if (moving)
@@ -217,6 +200,10 @@ bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
     return false;
   }
   if (!free_only()) start_motion();
+  // equilibria at the start know no friction: which of many would it be?
+  if (scene.simulation.mode != Mode::kStatic)
+    for (Joint& joint : robot.joints)
+      joint.engage_friction();
   statistics.start_iterations = std::exchange(statistics.iterations, 0);
   statistics.max_iterations = 0;
   ledger.open();
@@ -330,7 +317,9 @@ void Simulation::Parts::step_quasistatic() {
     count(report);
     if (report.converged()) {
       start_motion();
-      ledger.close_step(t, 0, 0.5 * step * (power + ledger.drive_power(t, true)));
+      equations.accept_equilibrium(t);
+      ledger.close_step(t, 0,
+                        0.5 * step * (power + ledger.drive_power(t, true)) + ledger.effort_work(t));
       ++statistics.steps;
       if (t >= end) status = RunStatus::kDone;
       return;

@@ -17,9 +17,9 @@ struct BodySample {
 };
 
 struct JointSample {
-  double position = 0, velocity = 0;
-  double effort =
-      0;  ///< along the joint's freedom: what the drive (and spring, damper) exerts on the child
+  Vec3 position{0, 0, 0}, velocity{0, 0, 0};  ///< by axis; of a ball see Joint::Observed
+  Vec3 effort{0, 0, 0};  ///< along each axis: what drive, spring, damper, friction, limits exert
+  Vec3 limit{0, 0, 0};   ///< of that, what the limits exert; 0 between them
 };
 
 /// J. work is what drives and loads have put in, dissipated what damping has taken out since t = 0;

@@ -33,4 +33,19 @@ StepPlan plan_steps(const Scene& scene) {
   return plan;
 }
 
+SolveOptions static_options(const SolverSpec& spec) {
+  SolveOptions options;
+  options.tolerance = spec.residual_tolerance.value_or(options.tolerance);
+  options.max_iterations = std::max(40, spec.max_iterations.value_or(0));
+  return options;
+}
+
+SolveOptions step_options(const SolverSpec& spec) {
+  SolveOptions options;
+  options.tolerance = spec.residual_tolerance.value_or(options.tolerance);
+  options.max_iterations = spec.max_iterations.value_or(15);
+  options.polish = true;
+  return options;
+}
+
 }  // namespace cprsim

@@ -139,6 +139,21 @@ void add_bodies(const Robot& robot, bool metric, RobotVariation& v) {
       if (load.follower || load.torque.norm() > 0) v.potential = false;
 }
 
+/// A ball's first three rows are no demand but its spring's moment, child axes; in K with the sign
+/// of a stiffness, action on the child and reaction on the parent.
+void add_ball(const Joint& joint, const Joint::Rows& rows, Eigen::Index row, RobotVariation& v) {
+  const Mat3 R_JC = rows.by_lambda.topLeftCorner<3, 3>().transpose();
+  const Mat3 by_child = R_JC * rows.by_child.topLeftCorner<3, 3>(),
+             by_parent = R_JC * rows.by_parent.topLeftCorner<3, 3>();
+  const Eigen::Index p = 6 * joint.parent, c = 6 * joint.child;
+  v.C.middleRows<3>(row).setZero();
+  if (joint.child >= 0) v.K.block<3, 3>(c, c) += by_child;
+  if (joint.parent >= 0) v.K.block<3, 3>(p, p) -= by_parent;
+  if (joint.child < 0 || joint.parent < 0) return;
+  v.K.block<3, 3>(c, p) += by_parent;
+  v.K.block<3, 3>(p, c) -= by_child;
+}
+
 void add_joints(const Robot& robot, RobotVariation& v) {
   Eigen::Index q = 6 * static_cast<Eigen::Index>(robot.bodies.size());
   Eigen::Index row = 0;
@@ -157,12 +172,19 @@ void add_joints(const Robot& robot, RobotVariation& v) {
       v.K.block<6, 6>(c, c) -= w.child_by_child;
     }
     if (joint.parent >= 0 && joint.child >= 0) v.K.block<6, 6>(p, c) -= w.parent_by_child;
-    if (joint.q_unknown()) {
-      v.C.block<6, 1>(row, q) = rows.by_q;
-      v.K(q, q) += rows.effort_by_q;
-      if (joint.parent >= 0) v.K.block<1, 6>(q, p) += rows.effort_by_parent;
-      ++q;
+    if (joint.is_ball()) add_ball(joint, rows, row, v);
+    for (std::size_t i = 0; i < joint.freedoms.size(); ++i) {
+      const int unknown = joint.freedoms[i].unknown;
+      if (unknown < 0) continue;
+      const auto k = static_cast<Eigen::Index>(i);
+      v.C.block<6, 1>(row, q + unknown) = rows.by_q.col(k);
+      if (joint.parent >= 0) v.K.block<1, 6>(q + unknown, p) += rows.effort_by_parent.row(k);
+      for (std::size_t j = 0; j < joint.freedoms.size(); ++j)
+        if (joint.freedoms[j].unknown >= 0)
+          v.K(q + unknown, q + joint.freedoms[j].unknown) +=
+              rows.effort_by_q(k, static_cast<Eigen::Index>(j));
     }
+    q += joint.unknown_coordinates();
     row += 6;
   }
   v.K = 0.5 * (v.K + MatX(v.K.transpose()));
@@ -233,7 +255,7 @@ RobotVariation robot_variation(const Robot& robot, Inertia inertia) {
     v.rods.push_back(reduce(robot, rod, rotary, metric, 1 / total));
   Eigen::Index outer = 6 * static_cast<Eigen::Index>(robot.bodies.size());
   for (const Joint& joint : robot.joints)
-    outer += joint.q_unknown() ? 1 : 0;
+    outer += joint.unknown_coordinates();
   v.K = MatX::Zero(outer, outer);
   v.M = MatX::Zero(outer, outer);
   add_bodies(robot, metric, v);

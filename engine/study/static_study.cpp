@@ -23,10 +23,10 @@ Profile constant(double value) {
 
 const char* unit_of(const Scene& scene, const DriveSpec& drive) {
   if (drive.quantity == DriveQuantity::kLength) return "m";
-  const bool slides =
-      scene.joints[static_cast<std::size_t>(drive.joint)].kind == JointKind::kPrismatic;
-  if (drive.quantity == DriveQuantity::kEffort) return slides ? "N" : "N m";
-  return slides ? "m" : "rad";
+  const bool length =
+      slides(scene.joints[static_cast<std::size_t>(drive.joint)].kind, drive.freedom);
+  if (drive.quantity == DriveQuantity::kEffort) return length ? "N" : "N m";
+  return length ? "m" : "rad";
 }
 
 Parameter parameter_of(const Scene& scene, std::size_t index) {
@@ -39,6 +39,8 @@ Parameter parameter_of(const Scene& scene, std::size_t index) {
   } else {
     p.name = scene.joints[static_cast<std::size_t>(drive.joint)].name +
              (drive.quantity == DriveQuantity::kEffort ? ".effort" : ".position");
+    if (freedom_count(scene.joints[static_cast<std::size_t>(drive.joint)].kind) > 1)
+      p.name += "." + std::to_string(drive.freedom + 1);
   }
   return p;
 }

@@ -3,6 +3,7 @@
 // plausibility.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "scenes/loader/reading.h"
 #include "scenes/loader/values.h"
@@ -152,7 +153,8 @@ struct Extremes {
   double least, most, t_least, t_most;
 };
 
-Extremes extremes_of(const Profile& profile, double end) {
+/// Of the profile's value, or of its rate.
+Extremes extremes_of(const Profile& profile, double end, bool of_rate) {
   constexpr int kSamples = 2000;
   std::vector<double> times = profile.breakpoints(end);
   times.push_back(0);
@@ -161,40 +163,86 @@ Extremes extremes_of(const Profile& profile, double end) {
   Extremes e{HUGE_VAL, -HUGE_VAL, 0, 0};
   for (const double t : times)
     for (const bool before : {false, true}) {
-      const double value = profile.evaluate(t, before).value;
+      const ProfileValue here = profile.evaluate(t, before);
+      const double value = of_rate ? here.rate : here.value;
       if (value < e.least) e.least = value, e.t_least = t;
       if (value > e.most) e.most = value, e.t_most = t;
     }
   return e;
 }
 
-void check_drives(Reading& r) {
-  const Scene& scene = r.scene;
-  std::vector<bool> position_driven(scene.joints.size(), false);
-  for (const DriveSpec& drive : scene.drives) {
-    if (drive.profile.terms.empty()) continue;
-    const Extremes e = extremes_of(drive.profile, scene.simulation.duration);
-    if (drive.rod >= 0 && e.least <= 0)
-      r.report.at(Severity::kError, "E508", drive.place, 13,
-                  "the length of '" + scene.rods[at(drive.rod)].name + "' becomes " +
-                      format_number(e.least) + " m at t = " + format_number(e.t_least) + " s");
-    if (drive.joint < 0 || drive.quantity != DriveQuantity::kPosition) continue;
-    const JointSpec& joint = scene.joints[at(drive.joint)];
-    position_driven[at(drive.joint)] = true;
-    const bool low = e.least<joint.lower, high = e.most> joint.upper;
+std::string axis_name(const JointSpec& joint, int axis) {
+  const std::string name = "joint '" + joint.name + "'";
+  return freedom_count(joint.kind) > 1 ? "axis " + std::to_string(axis + 1) + " of " + name : name;
+}
+
+void check_driven_axis(Reading& r, const DriveSpec& drive) {
+  const JointSpec& joint = r.scene.joints[at(drive.joint)];
+  if (drive.freedom >= freedom_count(joint.kind)) return;
+  const AxisSpec& axis = axis_of(joint, drive.freedom);
+  const std::string name = axis_name(joint, drive.freedom);
+  const double end = r.scene.simulation.duration;
+  const auto check = [&](const Extremes& e, double lower, double upper, const char* what) {
+    const bool low = e.least<lower, high = e.most> upper;
     if (low || high)
       r.report.at(Severity::kError, "E508", drive.place, 13,
-                  "the drive takes '" + joint.name + "' to " +
+                  "the drive takes " + std::string(what) + name + " to " +
                       format_number(low ? e.least : e.most) +
                       " at t = " + format_number(low ? e.t_least : e.t_most) +
-                      " s, beyond its limit " + format_number(low ? joint.lower : joint.upper));
+                      " s, beyond its limit " + format_number(low ? lower : upper));
+  };
+  const auto warn = [&](const std::string& message) {
+    r.report.at(Severity::kWarning, "W505", joint.place, 6, message);
+  };
+  const double speed = axis.velocity_limit;
+  switch (drive.quantity) {
+    case DriveQuantity::kPosition:
+      check(extremes_of(drive.profile, end, false), axis.lower, axis.upper, "");
+      check(extremes_of(drive.profile, end, true), -speed, speed, "the speed of ");
+      break;
+    case DriveQuantity::kVelocity:
+      check(extremes_of(drive.profile, end, false), -speed, speed, "the speed of ");
+      if (axis.limited()) warn("the velocity drive of " + name + " pushes through its limits");
+      break;
+    default:
+      return;
+  }
+  if (std::isfinite(axis.effort_limit))
+    warn("the drive of " + name +
+         " prescribes a motion and takes the effort it needs: nothing "
+         "enforces the effort limit");
+}
+
+void check_drives(Reading& r) {
+  const Scene& scene = r.scene;
+  std::set<std::pair<int, int>> moved;
+  for (const DriveSpec& drive : scene.drives) {
+    if (drive.profile.terms.empty()) continue;
+    if (drive.rod >= 0) {
+      const Extremes e = extremes_of(drive.profile, scene.simulation.duration, false);
+      if (e.least <= 0)
+        r.report.at(Severity::kError, "E508", drive.place, 13,
+                    "the length of '" + scene.rods[at(drive.rod)].name + "' becomes " +
+                        format_number(e.least) + " m at t = " + format_number(e.t_least) + " s");
+    } else if (drive.joint >= 0) {
+      check_driven_axis(r, drive);
+      if (drive.quantity != DriveQuantity::kEffort) moved.insert({drive.joint, drive.freedom});
+    }
   }
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
     const JointSpec& joint = scene.joints[j];
-    const bool limited = std::isfinite(joint.lower) || std::isfinite(joint.upper);
-    if (limited && !position_driven[j])
-      r.report.at(Severity::kWarning, "W505", joint.place, 6,
-                  "nothing enforces the limits of joint '" + joint.name + "' in this version");
+    for (int i = 0; i < freedom_count(joint.kind); ++i) {
+      const AxisSpec& axis = axis_of(joint, i);
+      if (std::isfinite(axis.velocity_limit) && !moved.count({static_cast<int>(j), i}))
+        r.report.at(
+            Severity::kWarning, "W505", joint.place, 6,
+            "nothing enforces the velocity limit of " + axis_name(joint, i) + " in this version");
+      if (axis.friction > 0 && scene.simulation.mode == Mode::kStatic)
+        r.report.at(Severity::kNote, "W592", joint.place, 6,
+                    "no friction in " + axis_name(joint, i) +
+                        ": in statics its sign and size are open; the equilibrium is that of "
+                        "the joint without it");
+    }
   }
 }
 

@@ -100,7 +100,7 @@ void FrameGraph::add_children(int scope) {
       vertices_[at(vertex)].body = body_count();
       link_of_body_.push_back(vertex);
       declare(scope, *child, {FrameKind::kLink, vertex});
-    } else if (child->name == "frame" || child->name == "joint") {
+    } else if (child->name == "frame" || child->name == "joint" || child->name == "cprsim:joint") {
       const FrameKind kind = child->name == "frame" ? FrameKind::kFrame : FrameKind::kJoint;
       const int vertex = add_vertex(kind, *child, scope);
       declare(scope, *child, {kind, vertex});

@@ -77,7 +77,8 @@ std::string path_of(const Node& node) {
   for (const Node* at = &node; at->parent && at->name != "world"; at = at->parent) {
     const std::string_view name = at->value("name");
     const bool entity = at->name == "model" || at->name == "link" || at->name == "joint" ||
-                        at->name == "cprsim:rod" || at->name == "frame";
+                        at->name == "cprsim:joint" || at->name == "cprsim:rod" ||
+                        at->name == "frame";
     std::string part = name.empty() ? at->name
                        : entity     ? std::string(name)
                                     : at->name + "[" + std::string(name) + "]";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drives, loads and initial velocities.
+#include <array>
 #include <set>
 
 #include "scenes/loader/reading.h"
@@ -68,10 +69,36 @@ bool resolve_driven(Reading& r, const Node& node, int scope, DriveSpec& drive) {
   return true;
 }
 
-void read_drive(Reading& r, const Node& node, int scope, std::set<std::pair<int, int>>& driven) {
+// which axis of a joint; the only one need not be named
+void resolve_axis(Reading& r, const Node& node, DriveSpec& drive) {
+  const Attribute* axis = node.attribute("axis");
+  if (axis) drive.freedom = axis->value.empty() ? 0 : axis->value.front() - '1';
+  if (drive.joint < 0) {
+    if (axis) r.report.bad_value("E310", node, *axis, "only a joint's drive has an axis");
+    return;
+  }
+  const JointSpec& joint = r.scene.joints[at(drive.joint)];
+  const int count = freedom_count(joint.kind);
+  const std::string named = "joint '" + joint.name + "'";
+  if (joint.kind == JointKind::kBall)
+    r.report.bad_value("E520", node, *node.attribute("joint"),
+                       "a ball joint has no single axis to drive",
+                       "available: drives of revolute, prismatic, universal, screw, cylindrical "
+                       "and planar joints; a torque by <cprsim:load>");
+  else if (!axis && count > 1)
+    r.report.error("E310", node,
+                   named + " has " + std::to_string(count) +
+                       " axes: say which one with axis=\"1\" to \"" + std::to_string(count) + "\"");
+  else if (axis && count > 0 && drive.freedom >= count)
+    r.report.bad_value("E310", node, *axis,
+                       named + " has " + std::to_string(count) + (count > 1 ? " axes" : " axis"));
+}
+
+void read_drive(Reading& r, const Node& node, int scope, std::set<std::array<int, 3>>& driven) {
   DriveSpec drive;
   drive.place = node.place;
   if (!resolve_driven(r, node, scope, drive)) return;
+  resolve_axis(r, node, drive);
   const std::string_view quantity = node.value("quantity");
   drive.quantity = quantity == "velocity" ? DriveQuantity::kVelocity
                    : quantity == "effort" ? DriveQuantity::kEffort
@@ -82,7 +109,7 @@ void read_drive(Reading& r, const Node& node, int scope, std::set<std::pair<int,
                        drive.rod >= 0 ? "a rod's drive has the quantity length"
                                       : "a joint's drive has the quantity position, velocity or "
                                         "effort");
-  if (!driven.insert({drive.joint, drive.rod}).second)
+  if (!driven.insert({drive.joint, drive.freedom, drive.rod}).second)
     r.report.error("E412", node,
                    "a second drive of " + (drive.rod >= 0 ? r.scene.rods[at(drive.rod)].name
                                                           : r.scene.joints[at(drive.joint)].name));
@@ -224,7 +251,7 @@ void read_velocities(Reading& r, const Node& world) {
 
 void read_actions(Reading& r, const Node& world) {
   const std::vector<bool> fixed = fixed_bodies(r.scene);
-  std::set<std::pair<int, int>> driven;
+  std::set<std::array<int, 3>> driven;
   for_each_scope(r, [&](int scope, const Node& node) {
     for (const Node* drive : node.all("cprsim:drive"))
       read_drive(r, *drive, scope, driven);

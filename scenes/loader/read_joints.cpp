@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rigid joints. At q = 0 the joint's frame is one and the same seen from both sides: X_WP X_PJ =
 // X_WC X_CJ = X_WJ.
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/loader/reading.h"
@@ -55,7 +56,7 @@ Vec3 axis_in_joint(Reading& r, const Node& axis, int scope, int vertex) {
   return direction.normalized();
 }
 
-void read_axis(Reading& r, const Node& axis, JointSpec& joint) {
+void read_axis(Reading& r, const Node& axis, AxisSpec& joint) {
   constexpr double kUnlimited = 1e16;  // SDF's own way to write infinity
   if (const Node* limit = axis.child("limit")) {
     const double inf = HUGE_VAL;
@@ -67,6 +68,9 @@ void read_axis(Reading& r, const Node& axis, JointSpec& joint) {
     if (joint.upper >= kUnlimited) joint.upper = inf;
     if (joint.effort_limit < 0 || joint.effort_limit >= kUnlimited) joint.effort_limit = inf;
     if (joint.velocity_limit < 0 || joint.velocity_limit >= kUnlimited) joint.velocity_limit = inf;
+    if (const Node* stiffness = limit->child("stiffness"))
+      joint.stop_stiffness = number_of(stiffness, 1);
+    joint.stop_dissipation = number_of(limit->child("dissipation"), 1);
     if (joint.lower > joint.upper)
       r.report.error("E306", *limit,
                      "the lower limit, " + format_number(joint.lower) +
@@ -74,6 +78,7 @@ void read_axis(Reading& r, const Node& axis, JointSpec& joint) {
   }
   if (const Node* dynamics = axis.child("dynamics")) {
     joint.damping = number_of(dynamics->child("damping"), 0);
+    joint.friction = number_of(dynamics->child("friction"), 0);
     joint.spring_stiffness = number_of(dynamics->child("spring_stiffness"), 0);
     joint.spring_reference = number_of(dynamics->child("spring_reference"), 0);
   }
@@ -83,7 +88,86 @@ JointKind kind_of(std::string_view type) {
   if (type == "revolute") return JointKind::kRevolute;
   if (type == "continuous") return JointKind::kContinuous;
   if (type == "prismatic") return JointKind::kPrismatic;
+  if (type == "ball") return JointKind::kBall;
+  if (type == "universal") return JointKind::kUniversal;
+  if (type == "screw") return JointKind::kScrew;
+  if (type == "cylindrical") return JointKind::kCylindrical;
+  if (type == "planar") return JointKind::kPlanar;
   return JointKind::kFixed;
+}
+
+bool mentioned(const Node& joint, std::string_view element) {
+  return std::any_of(joint.children.begin(), joint.children.end(),
+                     [&](const auto& part) { return part->name == element; });
+}
+
+/// What the axes of a kind must be like to each other.
+void check_directions(Reading& r, const Node& node, const JointSpec& joint) {
+  constexpr double kNearly = 1e-6;
+  const Vec3 &a = joint.axis, &b = joint.second.axis;
+  const Node* second = node.child("axis2");
+  if (!second) return;
+  if (joint.kind == JointKind::kUniversal && a.cross(b).norm() < kNearly)
+    r.report.error("E506", *second, "the two axes of a universal joint are parallel");
+  if (joint.kind == JointKind::kCylindrical && second->child("xyz") && a.cross(b).norm() > kNearly)
+    r.report.error("E506", *second, "a cylindrical joint turns about the axis it slides along");
+  if (joint.kind == JointKind::kPlanar && std::abs(a.dot(b)) > kNearly)
+    r.report.error("E506", *second, "the two slides of a planar joint are not perpendicular");
+}
+
+void check_ball(Reading& r, const Node& node, const JointSpec& joint) {
+  const Node* axis = node.child("axis");
+  if (!axis) return;
+  if (const Node* limit = axis->child("limit"); limit && joint.limited())
+    r.report.error("E520", *limit, "limits of a ball joint are not available in this version")
+        .suggestion = "available: damping and spring_stiffness";
+  if (joint.friction > 0)
+    r.report.error("E520", *axis, "dry friction of a ball joint is not available in this version")
+        .suggestion = "available: damping and spring_stiffness";
+  if (joint.spring_reference != 0)
+    r.report.error("E310", *axis,
+                   "the spring of a ball joint is relaxed where parent and child frame coincide; "
+                   "it has no spring_reference");
+}
+
+void read_screw(Reading& r, const Node& node, JointSpec& joint) {
+  const Node* pitch = node.child("screw_thread_pitch");
+  joint.screw_pitch = number_of(pitch, 1);
+  if (joint.kind == JointKind::kScrew) {
+    if (!mentioned(node, "screw_thread_pitch"))
+      r.report.missing("E303", node, describe(node) + " has no <screw_thread_pitch>");
+    if (joint.screw_pitch == 0)
+      r.report.bad_text("E306", *pitch, "a screw with pitch 0 is a revolute joint");
+  } else if (pitch) {
+    r.report.error("E310", *pitch, "only a screw joint has a thread");
+  }
+}
+
+/// Directions, limits and dynamics of every axis.
+void read_axes(Reading& r, const Node& node, int scope, int vertex, JointSpec& joint) {
+  constexpr const char* kElements[] = {"axis", "axis2", "axis3"};
+  const bool ball = joint.kind == JointKind::kBall;
+  const int count = ball ? 1 : freedom_count(joint.kind);
+  for (int i = 0; i < 3; ++i) {
+    const Node* axis = node.child(kElements[i]);
+    const bool turn_of_plane = joint.kind == JointKind::kPlanar && i == 2;
+    const bool optional =
+        ball || turn_of_plane || (joint.kind == JointKind::kCylindrical && i == 1);
+    if (axis && i >= count) {
+      r.report.error("E310", *axis,
+                     "a " + std::string(node.value("type")) + " joint has no <" + axis->name + ">");
+    } else if (axis) {
+      AxisSpec& spec = axis_of(joint, i);
+      const bool directed = !turn_of_plane && (axis->child("xyz") || !optional);
+      if (directed) spec.axis = axis_in_joint(r, *axis, scope, vertex);
+      read_axis(r, *axis, spec);
+    } else if (i < count && !optional && !mentioned(node, kElements[i])) {
+      r.report.missing("E303", node, describe(node) + " has no <" + kElements[i] + ">");
+    }
+  }
+  check_directions(r, node, joint);
+  if (ball) check_ball(r, node, joint);
+  read_screw(r, node, joint);
 }
 
 void read_joint(Reading& r, int vertex) {
@@ -108,17 +192,7 @@ void read_joint(Reading& r, int vertex) {
   }
   joint.X_PJ = r.frames.frame_ref(joint.parent, r.frames.X_W(vertex)).X_BF;
   joint.X_CJ = r.frames.frame_ref(joint.child, r.frames.X_W(vertex)).X_BF;
-  if (joint.kind != JointKind::kFixed) {
-    bool given = false;
-    for (const auto& part : node.children)
-      given = given || part->name == "axis";
-    if (const Node* axis = node.child("axis")) {
-      joint.axis = axis_in_joint(r, *axis, v.scope, vertex);
-      read_axis(r, *axis, joint);
-    } else if (!given) {
-      r.report.missing("E303", node, describe(node) + " has no <axis>");
-    }
-  }
+  if (joint.kind != JointKind::kFixed) read_axes(r, node, v.scope, vertex, joint);
   if (joint.kind == JointKind::kContinuous) joint.lower = -HUGE_VAL, joint.upper = HUGE_VAL;
   r.joint_of_vertex[vertex] = static_cast<int>(r.scene.joints.size());
   r.scene.joints.push_back(std::move(joint));

@@ -143,6 +143,10 @@ std::vector<ElementRule> action_elements() {
       {kTimed, "trapezoid", "", T::kAny, kShapes, '*', S::kLater, "Trapezoidal speed."},
       {kTimed, "csv", "", T::kAny, kShapes, '*', S::kLater, "From a file."},
       {kTimed, "expression", "", T::kAny, kShapes, '*', S::kLater, "A formula of t."},
+      {"world model", "cprsim:joint", "", T::kGroup, "", '*', S::kSupported,
+       "A joint that SDFormat does not have: cylindrical, planar."},
+      {"cprsim:joint", "axis3", "", T::kGroup, "", '?', S::kSupported,
+       "Limit and dynamics of a planar joint's turn."},
       {"world model", "cprsim:drive", "", T::kGroup, "", '*', S::kSupported,
        "Prescribes a joint or a rod's length."},
       {"world model", "cprsim:load", "", T::kGroup, "", '*', S::kSupported, "A force at a point."},
@@ -214,8 +218,8 @@ std::vector<ElementRule> cprsim_elements() {
 std::vector<AttributeRule> cprsim_attributes() {
   const auto yes = S::kSupported;
   return {
-      {"cprsim:rod cprsim:rod_class cprsim:tendon cprsim:profile cprsim:camera", "name", T::kName,
-       "", true, yes, "Unique."},
+      {"cprsim:rod cprsim:rod_class cprsim:tendon cprsim:profile cprsim:camera cprsim:joint",
+       "name", T::kName, "", true, yes, "Unique."},
       {"cprsim:expect cprsim:sweep", "name", T::kText, "", true, yes, "Says what it is about."},
       {"cprsim:rod cprsim:rod_class", "class", T::kRef, "", false, yes,
        "Takes over that class's properties."},
@@ -273,7 +277,10 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"sine", "end", T::kNonNegative, "s", false, yes, "0 after."},
       {"keyframes", "interpolation", T::kChoice, "step|linear|pchip|cubic", false, yes,
        "Between the keys."},
+      {"cprsim:joint", "type", T::kChoice, "cylindrical|planar", true, yes, "Kind of joint."},
       {"cprsim:drive", "joint", T::kRef, "", false, yes, "The joint, or"},
+      {"cprsim:drive", "axis", T::kChoice, "1|2|3", false, yes,
+       "Which axis of a joint that has several."},
       {"cprsim:drive", "rod", T::kRef, "", false, yes, "the rod."},
       {"cprsim:drive", "tendon", T::kRef, "available: joint, rod", false, S::kLater, "The tendon."},
       {"cprsim:drive", "quantity", T::kChoice,

@@ -10,7 +10,8 @@ using T = ValueType;
 using S = Status;
 
 constexpr auto kPosed =
-    "model link frame joint include collision visual inertial light gui_camera base tip";
+    "model link frame joint cprsim:joint include collision visual inertial light gui_camera base "
+    "tip";
 
 std::vector<ElementRule> world_elements() {
   return {
@@ -122,29 +123,37 @@ std::vector<ElementRule> model_elements() {
       {"link", "particle_emitter", "", T::kAny, "", '*', S::kNoEffect, "No effect."},
       {"link", "must_be_base_link", "", T::kAny, "", '?', S::kQuiet, "No effect."},
       {"world model", "joint", "", T::kGroup, "", '*', S::kSupported, "Connects two bodies."},
-      {"joint", "parent", "", T::kRef, "", '1', S::kSupported, "A link, frame or world."},
-      {"joint", "child", "", T::kRef, "", '1', S::kSupported, "A link or frame."},
-      {"joint", "axis", "", T::kGroup, "", '?', S::kSupported, "Direction of motion."},
-      {"joint", "axis2", "", T::kAny, "available: one axis", '?', S::kLater, "Second axis."},
-      {"joint", "screw_thread_pitch", "", T::kAny,
-       "available: fixed, revolute, continuous, prismatic", '?', S::kLater, "Pitch of a screw."},
+      {"joint cprsim:joint", "parent", "", T::kRef, "", '1', S::kSupported,
+       "A link, frame or world."},
+      {"joint cprsim:joint", "child", "", T::kRef, "", '1', S::kSupported, "A link or frame."},
+      {"joint cprsim:joint", "axis", "", T::kGroup, "", '?', S::kSupported,
+       "Direction of motion; of a ball only damping and spring."},
+      {"joint cprsim:joint", "axis2", "", T::kGroup, "", '?', S::kSupported,
+       "Second axis: of a universal, of a planar joint's other slide, of a cylindrical one's "
+       "turn."},
+      {"joint", "screw_thread_pitch", "", T::kNumber, "m per turn", '?', S::kSupported,
+       "Advance of a screw; positive: right-handed."},
       {"joint", "thread_pitch", "", T::kAny, "", '?', S::kRejected, "Deprecated."},
       {"joint", "physics", "joint_physics", T::kAny, "", '?', S::kNoEffect, "No effect."},
       {"joint", "gearbox_ratio", "", T::kAny, "", '?', S::kRejected, "Gears."},
-      {"axis", "xyz", "", T::kVec3, "", '?', S::kSupported, "Its direction."},
-      {"axis", "limit", "", T::kGroup, "", '?', S::kSupported, "Limits of the motion."},
+      {"axis axis2", "xyz", "", T::kVec3, "", '?', S::kSupported, "Its direction."},
+      {"axis axis2 axis3", "limit", "", T::kGroup, "", '?', S::kSupported, "Limits of the motion."},
       {"limit", "lower", "", T::kLimit, "rad or m", '?', S::kSupported, "Smallest position."},
       {"limit", "upper", "", T::kLimit, "rad or m", '?', S::kSupported, "Largest position."},
       {"limit", "effort", "", T::kLimit, "N m or N", '?', S::kSupported, "Largest effort."},
       {"limit", "velocity", "", T::kLimit, "rad/s or m/s", '?', S::kSupported, "Largest speed."},
-      {"limit", "stiffness", "", T::kPositive, "", '?', S::kQuiet, "No effect: see limit."},
-      {"limit", "dissipation", "", T::kNonNegative, "", '?', S::kQuiet, "No effect: see limit."},
-      {"axis", "dynamics", "", T::kGroup, "", '?', S::kSupported, "Damping and spring."},
-      {"axis", "mimic", "", T::kAny, "", '?', S::kRejected, "Coupled joints."},
+      {"limit", "stiffness", "", T::kPositive, "N m/rad or N/m", '?', S::kSupported,
+       "Of the stops at lower and upper; default: 1e-3 rad or 1e-3 of the robot's length under the "
+       "robot's own moment or force."},
+      {"limit", "dissipation", "", T::kNonNegative, "s/rad or s/m", '?', S::kSupported,
+       "d in stiffness x (1 + d x_t), Hunt and Crossley; default 1."},
+      {"axis axis2 axis3", "dynamics", "", T::kGroup, "", '?', S::kSupported,
+       "Damping, dry friction and spring."},
+      {"axis axis2 axis3", "mimic", "", T::kAny, "", '?', S::kRejected, "Coupled joints."},
       {"dynamics", "damping", "", T::kNonNegative, "N m s or N s/m", '?', S::kSupported,
        "Viscous."},
-      {"dynamics", "friction", "", T::kNonNegative, "available: damping", '?', S::kOnlyFalse,
-       "Dry friction."},
+      {"dynamics", "friction", "", T::kNonNegative, "N m or N", '?', S::kSupported,
+       "Dry (Coulomb); none in statics, where its sign is open."},
       {"dynamics", "spring_reference", "", T::kNumber, "rad or m", '?', S::kSupported,
        "Position at which the spring is relaxed."},
       {"dynamics", "spring_stiffness", "", T::kNonNegative, "N m/rad or N/m", '?', S::kSupported,
@@ -274,7 +283,7 @@ std::vector<AttributeRule> sdf_attributes() {
       {"inertial", "auto", T::kBool, "write mass and inertia", false, S::kOnlyFalse,
        "Computes the inertia from the shapes."},
       {"joint", "type", T::kChoice,
-       "fixed|revolute|continuous|prismatic|!ball|!universal|!screw|!revolute2|!gearbox", true,
+       "fixed|revolute|continuous|prismatic|ball|universal|screw|!revolute2|!gearbox", true,
        S::kSupported, "Kind of joint."},
       {"xyz", "expressed_in", T::kRef, "", false, S::kSupported, "Frame of the direction."},
   };

@@ -207,5 +207,38 @@ TEST(Loading, ReportsAllIndependentMistakesAtOnce) {
   EXPECT_EQ(error_codes(load_text(text)), expected);
 }
 
+TEST(Loading, ReadsEveryAxisOfAJoint) {
+  const auto scene = scene_of(R"(
+    <cprsim:joint name="table" type="planar"><parent>base</parent><child>plate</child>
+      <axis><xyz>0 2 0</xyz><limit><lower>-1</lower><upper>2</upper><stiffness>50</stiffness><dissipation>0.5</dissipation></limit></axis>
+      <axis2><xyz>0 0 1</xyz><dynamics><friction>0.3</friction></dynamics></axis2>
+      <axis3><dynamics><damping>0.2</damping><spring_stiffness>4</spring_stiffness></dynamics></axis3>
+    </cprsim:joint>
+    <joint name="bolt" type="screw"><parent>base</parent><child>plate</child>
+      <axis><xyz>1 0 0</xyz></axis><screw_thread_pitch>-0.01</screw_thread_pitch></joint>
+    <cprsim:drive joint="table" axis="3" quantity="velocity"><constant value="1"/></cprsim:drive>)");
+  ASSERT_EQ(scene->joints.size(), 3u);
+  const auto named = [&](const std::string& name) {
+    for (const JointSpec& joint : scene->joints)
+      if (joint.name == name) return joint;
+    return JointSpec{};
+  };
+  const JointSpec table = named("robot::table"), bolt = named("robot::bolt");
+  EXPECT_EQ(table.kind, JointKind::kPlanar);
+  EXPECT_EQ(table.axis, Vec3::UnitY());
+  EXPECT_EQ(table.lower, -1);
+  EXPECT_EQ(table.stop_stiffness, 50);
+  EXPECT_EQ(table.stop_dissipation, 0.5);
+  EXPECT_EQ(table.second.axis, Vec3::UnitZ());
+  EXPECT_EQ(table.second.friction, 0.3);
+  EXPECT_FALSE(table.second.limited());
+  EXPECT_EQ(table.third.damping, 0.2);
+  EXPECT_EQ(table.third.spring_stiffness, 4);
+  EXPECT_EQ(bolt.kind, JointKind::kScrew);
+  EXPECT_EQ(bolt.screw_pitch, -0.01);
+  ASSERT_EQ(scene->drives.size(), 1u);
+  EXPECT_EQ(scene->drives[0].freedom, 2);
+}
+
 }  // namespace
 }  // namespace cprsim

@@ -83,6 +83,69 @@ std::string effects_text(const Scene& scene) {
   return on + (off.empty() ? "" : "effects off\n " + off + "\n");
 }
 
+const char* kind_name(JointKind kind) {
+  switch (kind) {
+    case JointKind::kRevolute:
+      return "revolute";
+    case JointKind::kContinuous:
+      return "continuous";
+    case JointKind::kPrismatic:
+      return "prismatic";
+    case JointKind::kBall:
+      return "ball";
+    case JointKind::kUniversal:
+      return "universal";
+    case JointKind::kScrew:
+      return "screw";
+    case JointKind::kCylindrical:
+      return "cylindrical";
+    case JointKind::kPlanar:
+      return "planar";
+    case JointKind::kFixed:
+      break;
+  }
+  return "fixed";
+}
+
+const char* drive_name(const Scene& scene, std::size_t joint, int axis) {
+  for (const DriveSpec& drive : scene.drives) {
+    if (drive.joint != static_cast<int>(joint) || drive.freedom != axis) continue;
+    if (drive.quantity == DriveQuantity::kPosition) return "position drive";
+    return drive.quantity == DriveQuantity::kVelocity ? "velocity drive" : "effort drive";
+  }
+  return "free";
+}
+
+/// What drives and resists each axis of a joint.
+std::vector<std::string> axis_texts(const Scene& scene, std::size_t index) {
+  const JointSpec& joint = scene.joints[index];
+  std::vector<std::string> texts;
+  const int count = joint.kind == JointKind::kBall ? 1 : freedom_count(joint.kind);
+  for (int i = 0; i < count; ++i) {
+    const AxisSpec& axis = axis_of(joint, i);
+    std::string text = drive_name(scene, index, i);
+    if (axis.limited()) text += fmt::format(", limits {:.6g} to {:.6g}", axis.lower, axis.upper);
+    if (axis.spring_stiffness > 0) text += fmt::format(", spring {:.6g}", axis.spring_stiffness);
+    if (axis.damping > 0) text += fmt::format(", damping {:.6g}", axis.damping);
+    if (axis.friction > 0) text += fmt::format(", friction {:.6g}", axis.friction);
+    texts.push_back(std::move(text));
+  }
+  return texts;
+}
+
+std::string joints_text(const Scene& scene) {
+  std::string text;
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const JointSpec& joint = scene.joints[j];
+    if (joint.kind == JointKind::kFixed) continue;
+    text += fmt::format("joint {}: {}", joint.name, kind_name(joint.kind));
+    if (joint.kind == JointKind::kScrew)
+      text += fmt::format(", {:.6g} m per turn", joint.screw_pitch);
+    text += fmt::format("; {}\n", fmt::join(axis_texts(scene, j), " | "));
+  }
+  return text;
+}
+
 std::string rod_text(const Scene& scene, const RodGroup& group) {
   const RodFacts& rod = *group.facts;
   std::string text = fmt::format("rod {}\n", fmt::join(group.names, ", "));
@@ -138,6 +201,7 @@ Json to_json(const Scene& scene, const ProblemFacts& facts) {
                {"body_unknowns", facts.body_unknowns},
                {"constraint_unknowns", facts.constraint_unknowns},
                {"effects", Json::object()},
+               {"joints", Json::array()},
                {"rods", Json::array()},
                {"channels", Json::array()}};
   for (int i = 0; i < kEffectCount; ++i) {
@@ -146,6 +210,10 @@ Json to_json(const Scene& scene, const ProblemFacts& facts) {
         {"on", scene.effects.has(effect)},
         {"asked_at", place_name(scene, scene.effects.asked_at[static_cast<std::size_t>(i)])}};
   }
+  for (std::size_t j = 0; j < scene.joints.size(); ++j)
+    json["joints"].push_back({{"name", scene.joints[j].name},
+                              {"type", kind_name(scene.joints[j].kind)},
+                              {"axes", axis_texts(scene, j)}});
   for (const RodFacts& rod : facts.rods)
     json["rods"].push_back(rod_json(scene, rod));
   for (const Channel& channel : find_channels(scene, "*")) {
@@ -183,7 +251,8 @@ int info_command(const Words& words) {
     const auto simulation = build_simulation(scene);
     const ProblemFacts& facts = simulation->facts();
     if (console.json()) write_to_stdout(to_json(scene, facts).dump(2) + "\n");
-    console.say(contents_text(scene) + solver_text(facts) + effects_text(scene));
+    console.say(contents_text(scene) + solver_text(facts) + effects_text(scene) +
+                joints_text(scene));
     for (const RodGroup& group : groups_of(facts))
       console.say(rod_text(scene, group));
   } catch (const std::invalid_argument& error) {

@@ -134,7 +134,7 @@ Solved solve(StaticStudy& study, const SolveWords& w, const std::vector<Paramete
 double effort_of(const Scene& scene, const Snapshot& now, const Parameter& drive) {
   const DriveSpec& spec = scene.drives[static_cast<std::size_t>(drive.index)];
   if (spec.quantity != DriveQuantity::kLength)
-    return now.joints[static_cast<std::size_t>(spec.joint)].effort;
+    return now.joints[static_cast<std::size_t>(spec.joint)].effort[spec.freedom];
   const RodPoint& base = now.rods[static_cast<std::size_t>(spec.rod)].points.front();
   return base.force.dot(base.rotation.col(2));
 }

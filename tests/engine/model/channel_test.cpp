@@ -52,6 +52,25 @@ TEST(Channels, SelectComponentsAndGlobs) {
             3u);  // bodies and frames; a joint's position has no components
 }
 
+TEST(Channels, NumberTheAxesOfAJoint) {
+  Scene scene;
+  scene.joints.resize(2);
+  scene.joints[0].name = "sleeve";
+  scene.joints[0].kind = JointKind::kCylindrical;
+  scene.joints[0].second.upper = 1;
+  scene.joints[1].name = "ball";
+  scene.joints[1].kind = JointKind::kBall;
+  const auto sleeve = find_channels(scene, "sleeve.*");
+  ASSERT_EQ(sleeve.size(), 8u);  // limits are there to be reported
+  EXPECT_EQ(sleeve[0].name + " " + sleeve[0].unit, "sleeve.position.1 m");
+  EXPECT_EQ(sleeve[1].name + " " + sleeve[1].unit, "sleeve.position.2 rad");
+  EXPECT_EQ(sleeve[7].name + " " + sleeve[7].unit, "sleeve.limit.2 N m");
+  EXPECT_EQ(sleeve[7].component, 1);
+  const auto ball = find_channels(scene, "ball.velocity");
+  ASSERT_EQ(ball.size(), 3u);
+  EXPECT_EQ(ball[2].name + " " + ball[2].unit, "ball.velocity.z rad/s");
+}
+
 TEST(Channels, NamePointsOfARod) {
   const auto at = find_channels(robot(), "robot::leg_2(s=0.25).position");
   ASSERT_EQ(at.size(), 3u);

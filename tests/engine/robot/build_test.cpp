@@ -127,10 +127,15 @@ TEST(Robot, LeavesTheLinksFreeThatBulletIntegrates) {
   EXPECT_EQ(free, find_free_bodies(scene));
 }
 
-TEST(Robot, RefusesJointsItCannotSimulate) {
+TEST(Robot, RefusesToDriveAnAxisThatAJointHasNot) {
   for (JointKind kind : {JointKind::kBall, JointKind::kUniversal, JointKind::kScrew}) {
     Scene scene = welded_pair();
     scene.joints[0].kind = kind;
+    EXPECT_NO_THROW(build_robot(scene));
+    DriveSpec drive;
+    drive.joint = 0;
+    drive.freedom = freedom_count(kind);
+    scene.drives.push_back(drive);
     EXPECT_THROW(build_robot(scene), std::invalid_argument);
   }
 }

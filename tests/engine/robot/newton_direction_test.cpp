@@ -211,17 +211,20 @@ TEST(NewtonDirection, IsExactUnderDeadAndFollowerLoads) {
   }
 }
 
-DriveSpec joint_drive(int joint, DriveQuantity quantity) {
+DriveSpec joint_drive(int joint, DriveQuantity quantity, int freedom = 0) {
   DriveSpec drive;
   drive.joint = joint;
+  drive.freedom = freedom;
   drive.quantity = quantity;
   drive.profile = constant_profile(0.3);
   return drive;
 }
 
 TEST(NewtonDirection, IsExactForFreeJointsWithSpringsAndDampers) {
-  for (JointKind first : {JointKind::kRevolute, JointKind::kPrismatic})
-    for (JointKind second : {JointKind::kContinuous, JointKind::kPrismatic}) {
+  for (JointKind first : {JointKind::kRevolute, JointKind::kPrismatic, JointKind::kBall,
+                          JointKind::kUniversal, JointKind::kPlanar})
+    for (JointKind second : {JointKind::kContinuous, JointKind::kPrismatic, JointKind::kBall,
+                             JointKind::kScrew, JointKind::kCylindrical}) {
       const Scene scene = jointed_arms(first, second);
       const std::string what = "joints " + std::to_string(static_cast<int>(first)) + " and " +
                                std::to_string(static_cast<int>(second));
@@ -242,6 +245,34 @@ TEST(NewtonDirection, IsExactForDrivenJoints) {
       expect_exact(scene, {}, what);
       expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
     }
+}
+
+TEST(NewtonDirection, IsExactForOneDrivenAxisOfSeveral) {
+  for (JointKind kind : {JointKind::kUniversal, JointKind::kCylindrical, JointKind::kPlanar})
+    for (int freedom = 0; freedom < freedom_count(kind); ++freedom)
+      for (DriveQuantity quantity :
+           {DriveQuantity::kPosition, DriveQuantity::kEffort, DriveQuantity::kVelocity}) {
+        Scene scene = jointed_arms(kind, JointKind::kRevolute);
+        scene.drives.push_back(joint_drive(0, quantity, freedom));
+        const std::string what = "joint " + std::to_string(static_cast<int>(kind)) + ", axis " +
+                                 std::to_string(freedom) + ", drive " +
+                                 std::to_string(static_cast<int>(quantity));
+        expect_exact(scene, {}, what);
+        expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+      }
+}
+
+TEST(NewtonDirection, IsExactForStopsAndFriction) {
+  for (JointKind kind : {JointKind::kRevolute, JointKind::kScrew, JointKind::kPlanar}) {
+    Scene scene = jointed_arms(kind, JointKind::kPrismatic);
+    for (JointSpec& joint : scene.joints) {
+      joint.upper = -0.3;  // q is about 0: well inside the stop
+      joint.stop_stiffness = 4;
+      joint.friction = 0.1;
+    }
+    expect_exact(scene, {}, "stops, statics");
+    expect_exact(scene, {Mode::kBackwardEuler}, "stops, dynamics");
+  }
 }
 
 TEST(NewtonDirection, IsExactOnEveryRungOfTheLadder) {

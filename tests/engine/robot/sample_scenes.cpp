@@ -99,6 +99,10 @@ Scene jointed_arms(JointKind first, JointKind second) {
   joint.spring_stiffness = 3;
   joint.spring_reference = 0.2;
   joint.damping = 0.01;
+  joint.second.axis = Vec3(0.8, -0.36, -0.48);
+  joint.second.spring_stiffness = 2;
+  joint.third.spring_stiffness = 1.5;
+  joint.screw_pitch = 0.4;
   joint.name = "shoulder";
   joint.kind = first;
   joint.child = 0;
@@ -130,7 +134,8 @@ StageRates start_step(Robot& robot, Equations& equations, SchemeKind scheme, dou
   for (RigidBody& body : robot.bodies)
     body.start_tracks(0.3 * numbers.vec3(), 0.3 * numbers.vec3());
   for (Joint& joint : robot.joints)
-    joint.track.set_start(VecX::Constant(1, joint.q), VecX::Constant(1, 0.2));
+    joint.start_tracks(robot.body_pose(joint.parent), robot.body_pose(joint.child),
+                       0.2 * numbers.vec6());
   for (RobotRod& rod : robot.rods)
     rod.model->start_tracks();
   Stepper stepper({scheme, -0.4, 0.8});
@@ -161,7 +166,7 @@ void disturb(Robot& robot, Equations& equations, Numbers& numbers, double size) 
     body.p += size * numbers.vec3();
   }
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    u.joint_q[j] += size * numbers.next();
+    u.joint_q[j] += size * numbers.vec3();
     u.joint_lambda[j] += 3 * size * numbers.vec6();
   }
   equations.set_unknowns(u);

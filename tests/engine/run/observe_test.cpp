@@ -27,8 +27,8 @@ Snapshot falling(double t) {
   body.angular_velocity = 3 * Vec3(1, 2, 2).normalized();
   snapshot.bodies.push_back(body);
   JointSample joint;
-  joint.position = t * t * t;
-  joint.velocity = 3 * t * t;
+  joint.position.x() = t * t * t;
+  joint.velocity.x() = 3 * t * t;
   snapshot.joints.push_back(joint);
   snapshot.energy.work = 2 * t;
   snapshot.solver.iterations = static_cast<int>(std::lround(10 * t));
@@ -70,7 +70,7 @@ TEST(Interpolate, IsExactForCubicMotionAndConstantRates) {
     EXPECT_EQ(got.time, t);
     EXPECT_LT((got.bodies[0].X_WB.p - exact.bodies[0].X_WB.p).norm(), kExact);
     EXPECT_LT((got.bodies[0].X_WB.R - exact.bodies[0].X_WB.R).norm(), kExact);
-    EXPECT_NEAR(got.joints[0].position, exact.joints[0].position, kExact);
+    EXPECT_NEAR(got.joints[0].position.x(), exact.joints[0].position.x(), kExact);
     EXPECT_NEAR(got.energy.work, exact.energy.work, kExact);
   }
 }
@@ -87,13 +87,13 @@ TEST(Interpolate, GoesLinearlyWhereNothingHasAVelocity) {
   Snapshot a = falling(0), b = falling(1);
   for (Snapshot* s : {&a, &b}) {
     s->bodies[0].linear_velocity.setZero();
-    s->joints[0].velocity = 0;
+    s->joints[0].velocity.setZero();
   }
   const Snapshot quarter = interpolate(a, b, 0.25);
   EXPECT_LT(
       (quarter.bodies[0].X_WB.p - (0.75 * a.bodies[0].X_WB.p + 0.25 * b.bodies[0].X_WB.p)).norm(),
       kExact);
-  EXPECT_NEAR(quarter.joints[0].position, 0.25, kExact);
+  EXPECT_NEAR(quarter.joints[0].position.x(), 0.25, kExact);
 }
 
 TEST(Interpolate, KeepsTheGridOfTheLaterStateWhenItChanged) {
@@ -150,7 +150,7 @@ TEST(Evaluate, ReadsBodiesFramesJointsAndRods) {
         (body.linear_velocity + body.angular_velocity.cross(arm))[i], kExact);
   }
   EXPECT_EQ(evaluate(channel(ChannelEntity::kJoint, Quantity::kJointVelocity), scene, snapshot),
-            snapshot.joints[0].velocity);
+            snapshot.joints[0].velocity.x());
   EXPECT_EQ(evaluate(channel(ChannelEntity::kRod, Quantity::kLength), scene, snapshot),
             0.5 * kPi / 2);
   EXPECT_NEAR(

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/robots.h"
+#include "tests/support/jointed_bodies.h"
 
 namespace cprsim {
 namespace {
@@ -82,12 +82,14 @@ TEST(Modes, TimoshenkoBeamWithRotaryInertia) {
 
 TEST(Modes, BeamWithATipMass) {
   const double beam_mass = 8000 * std::numbers::pi * kRadius * kRadius * kLength;
+
   const struct {
     double ratio;
     std::vector<double> roots;
   } cases[] = {{0.25, {1.57375130266, 4.22511285671, 7.28123637341}},
                {1, {1.24791740961, 4.03113943671, 7.13413224094}},
                {5, {0.87002145889, 3.94998049114, 7.08253760284}}};
+
   for (const auto& c : cases) {
     Scene scene = beam(EndJoint::kFixed, EndJoint::kFixed);
     BodySpec body;
@@ -120,13 +122,38 @@ TEST(Modes, AxialForceChangesAPinnedBeamsFrequencies) {
   load.at.body = 0;
   scene.loads.push_back(load);
   const double pi = std::numbers::pi;
-  const double critical =
-      pi * pi * bending_stiffness(scene.rods[0]) / (kLength * kLength);
+  const double critical = pi * pi * bending_stiffness(scene.rods[0]) / (kLength * kLength);
   for (const double part : {-3.0, 0.0, 0.5, 0.99}) {
     scene.loads[0].force = {0, 0, -part * critical};
     const std::vector<double> omegas = bending_modes(scene, 1);
     ASSERT_FALSE(omegas.empty());
     EXPECT_NEAR(omegas[0] / (omega_of(pi) * std::sqrt(1 - part)), 1, 1e-6) << part;
+  }
+}
+
+// A body that hangs on a joint by its arm l, springs k: (m g l + k) / (I + m l²) for swings, k / I
+// for the turn about the plumb line.
+TEST(Modes, BodiesOnBallsAndUniversals) {
+  constexpr double kMass = 0.4, kArm = 0.25, kSpring = 0.3;
+  const Vec3 I(2e-3, 3e-3, 1e-3);
+  for (JointKind kind : {JointKind::kBall, JointKind::kUniversal}) {
+    Scene scene;
+    switch_on(scene, {Effect::kGravity});
+    scene.gravity = {0, 0, -9.81};
+    scene.bodies.push_back(lump("bob", {Mat3::Identity(), {0, 0, -kArm}}, kMass, I));
+    scene.joints.push_back(joint_at(scene, kind, Vec3::Zero(), kWorld, 0, Vec3::UnitX()));
+    JointSpec& joint = scene.joints[0];
+    joint.second.axis = Vec3::UnitY();
+    joint.spring_stiffness = joint.second.spring_stiffness = kSpring;
+    StaticStudy study(scene);
+    ASSERT_TRUE(study.solve().converged());
+    const std::vector<VibrationMode> modes = natural_modes(study, 3);
+    const double restoring = kMass * 9.81 * kArm + kSpring, swung = kMass * kArm * kArm;
+    std::vector<double> expected{restoring / (I.y() + swung), restoring / (I.x() + swung)};
+    if (kind == JointKind::kBall) expected.push_back(kSpring / I.z());
+    ASSERT_EQ(modes.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(modes[i].omega_squared, expected[i], 1e-8 * expected[i]);
   }
 }
 
