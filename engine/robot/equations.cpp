@@ -17,11 +17,17 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
   condensed_.resize(robot.rods.size());
   eliminations_.resize(robot.rods.size());
   joint_gap_.assign(robot.joints.size(), Vec6::Zero());
-  body_unknowns_ = 6 * static_cast<int>(n);
+  in_plane_.setZero();
+  if (robot.plane) {
+    freedoms_ = 3;
+    in_plane_.topLeftCorner<3, 1>() = robot.plane->col(2);
+    in_plane_.bottomRightCorner<3, 2>() = robot.plane->leftCols<2>();
+  }
+  body_unknowns_ = freedoms_ * static_cast<int>(n);
   int offset = body_unknowns_;
   for (const Joint& joint : robot.joints) {
     joint_offset_.push_back(offset);
-    offset += joint.unknowns();
+    offset += unknowns_of(joint);
   }
   size_ = offset;
 }
@@ -189,6 +195,18 @@ void Equations::note(double value, Worst where, ProblemResidual& r) {
   worst_ = where;
 }
 
+// Six rows (moment or turn, force or shift), or what of them the plane leaves.
+void Equations::note_rows(const Vec6& rows, Worst where, ProblemResidual& r) {
+  if (!robot_.plane) {
+    for (where.row = 0; where.row < 6; ++where.row)
+      note(rows[where.row], where, r);
+    return;
+  }
+  const Vec3 left = in_plane_.transpose() * rows;
+  for (where.row = 0; where.row < 3; ++where.row)
+    note(left[where.row], where, r);
+}
+
 // Newton-Euler: everything that acts, minus what inertia takes; tangents of what is not rods or
 // joints.
 Vec6 Equations::body_rows(std::size_t b) {
@@ -278,9 +296,10 @@ ProblemResidual Equations::evaluate() {
       const double stiffness = robot_.bodies[b].mass * rates_.c_v * rates_.c_w;
       const double noise =
           std::max(1.0, kRoundOff * stiffness * unit.length / (unit.force * tolerance_));
-      for (int i = 0; i < 6; ++i)
-        note(wrench_[b][i] / (noise * (i < 3 ? unit.moment() : unit.force)),
-             {Worst::Kind::kBody, static_cast<int>(b), i}, r);
+      Vec6 scaled = wrench_[b];
+      scaled.head<3>() /= noise * unit.moment();
+      scaled.tail<3>() /= noise * unit.force;
+      note_rows(scaled, {Worst::Kind::kBody, static_cast<int>(b), 0}, r);
     }
   }
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
@@ -289,9 +308,12 @@ ProblemResidual Equations::evaluate() {
         joint.rows(body_pose(joint.parent), body_pose(joint.child), rates_, robot_.scale.length,
                    robot_.scale.moment(), robot_.scale.force);
     const double open = gaps_captured_ ? 1 - fraction_ : 0;
-    for (int i = 0; i < 6; ++i)
-      note(rows.closure[i] - open * joint_gap_[j][i], {Worst::Kind::kJoint, static_cast<int>(j), i},
-           r);
+    Vec6 closure = rows.closure - open * joint_gap_[j];
+    if (robot_.plane) {
+      closure.head<3>() = (rows.axes * closure.head<3>()).eval();
+      closure.tail<3>() = (rows.axes * closure.tail<3>()).eval();
+    }
+    note_rows(closure, {Worst::Kind::kJoint, static_cast<int>(j), 0}, r);
     if (joint.q_unknown()) note(rows.effort, {Worst::Kind::kJoint, static_cast<int>(j), 6}, r);
   }
   return r;
@@ -320,8 +342,8 @@ void Equations::move(double alpha) {
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
     Joint& joint = robot_.joints[j];
     const Eigen::Index at = joint_offset_[j];
-    joint.lambda = kept_.joint_lambda[j] + alpha * x_.segment<6>(at);
-    if (joint.q_unknown()) joint.q = kept_.joint_q[j] + alpha * x_[at + 6];
+    joint.lambda = kept_.joint_lambda[j] + alpha * in_space(&x_[at]);
+    if (joint.q_unknown()) joint.q = kept_.joint_q[j] + alpha * x_[at + freedoms_];
   }
   for (RobotRod& rod : robot_.rods)
     rod.model->move(alpha);
@@ -332,15 +354,18 @@ std::string Equations::worst_row() const {
                                         "force x",  "force y",  "force z"};
   static const char* const kClosure[] = {"rotation x", "rotation y", "rotation z", "position x",
                                          "position y", "position z", "effort"};
+  static const char* const kPlanarWrench[] = {"moment about the normal", "force 1", "force 2"};
+  static const char* const kPlanarClosure[] = {"angle", "position 1", "position 2"};
   const auto i = static_cast<std::size_t>(worst_.index);
   switch (worst_.kind) {
     case Worst::Kind::kBody: {
       const int link = robot_.bodies[i].links.front();
       return "balance of " + robot_.scene->bodies[static_cast<std::size_t>(link)].name + ", " +
-             kWrench[worst_.row];
+             (robot_.plane ? kPlanarWrench : kWrench)[worst_.row];
     }
     case Worst::Kind::kJoint:
-      return "joint " + robot_.joints[i].spec->name + ", " + kClosure[worst_.row];
+      return "joint " + robot_.joints[i].spec->name + ", " +
+             (robot_.plane && worst_.row < 3 ? kPlanarClosure : kClosure)[worst_.row];
     case Worst::Kind::kRod:
       break;
   }
@@ -357,7 +382,7 @@ long Equations::section_evaluations() const {
 int Equations::unknown_count() const {
   int sum = body_unknowns_;
   for (const Joint& joint : robot_.joints)
-    sum += joint.unknowns();
+    sum += unknowns_of(joint);
   for (const RobotRod& rod : robot_.rods)
     sum += rod.model->unknown_count();
   return sum;

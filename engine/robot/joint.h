@@ -38,12 +38,11 @@ class Joint {
 
   bool q_unknown() const { return freedom != Freedom::kNone && motion == Motion::kFree; }
 
-  int unknowns() const { return q_unknown() ? 7 : 6; }
-
   /// Linearised closure (1) and effort row (2), dimensionless with the given length, moment and
   /// force units.
   struct Rows {
     Vec6 closure;
+    Mat3 axes;                 ///< of closure in the world
     Mat6 by_parent, by_child;  ///< of closure, by (phi, dp) of the bodies' centres of mass
     Vec6 by_q;
     double effort = 0;
