@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The planar kernel and the spatial one are two discretisations of one law on one grid: what moves
+// in a plane must come out the same from both, up to what their solvers leave.
+#include <gtest/gtest.h>
+
+#include "tests/support/planar_robots.h"
+
+namespace cprsim {
+namespace {
+
+double largest_force(const Snapshot& s) {
+  double most = 0;
+  for (const RodSample& rod : s.rods)
+    for (const RodPoint& point : rod.points)
+      most = std::max(most, point.force.norm());
+  return most;
+}
+
+/// Everything that an observer sees, each relative to the largest of its kind.
+void expect_same(const Snapshot& a, const Snapshot& b, double tolerance) {
+  ASSERT_EQ(a.rods.size(), b.rods.size());
+  const double force = largest_force(a), speed = [&] {
+    double most = 1e-3;
+    for (const RodSample& rod : a.rods)
+      for (const RodPoint& point : rod.points)
+        most = std::max(most, point.velocity.norm());
+    return most;
+  }();
+  for (std::size_t r = 0; r < a.rods.size(); ++r) {
+    const double L = a.rods[r].length;
+    ASSERT_EQ(a.rods[r].points.size(), b.rods[r].points.size());
+    for (std::size_t k = 0; k < a.rods[r].points.size(); ++k) {
+      const RodPoint &p = a.rods[r].points[k], &q = b.rods[r].points[k];
+      const std::string where = "rod " + std::to_string(r) + ", s = " + std::to_string(p.s);
+      EXPECT_EQ(p.s, q.s);
+      EXPECT_LT((p.position - q.position).norm(), tolerance * L) << where;
+      EXPECT_LT((p.rotation - q.rotation).norm(), tolerance) << where;
+      EXPECT_LT((p.velocity - q.velocity).norm(), tolerance * speed) << where;
+      EXPECT_LT((p.force - q.force).norm(), tolerance * force) << where;
+      EXPECT_LT((p.moment - q.moment).norm(), tolerance * force * L) << where;
+      EXPECT_LT((p.curvature - q.curvature).norm(), 10 * tolerance / L) << where;
+      EXPECT_LT((p.shear_stretch - q.shear_stretch).norm(), tolerance) << where;
+    }
+  }
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    EXPECT_LT((a.bodies[i].X_WB.p - b.bodies[i].X_WB.p).norm(), tolerance) << "body " << i;
+    EXPECT_LT((a.bodies[i].X_WB.R - b.bodies[i].X_WB.R).norm(), tolerance) << "body " << i;
+  }
+  for (std::size_t j = 0; j < a.joints.size(); ++j) {
+    EXPECT_NEAR(a.joints[j].position, b.joints[j].position, tolerance) << "joint " << j;
+    EXPECT_NEAR(a.joints[j].effort, b.joints[j].effort, tolerance * force) << "joint " << j;
+  }
+  const double energy = std::abs(a.energy.kinetic) + std::abs(a.energy.elastic);
+  EXPECT_NEAR(a.energy.kinetic, b.energy.kinetic, tolerance * energy);
+  EXPECT_NEAR(a.energy.elastic, b.energy.elastic, tolerance * energy);
+  EXPECT_NEAR(a.energy.gravity, b.energy.gravity, tolerance * energy);
+  EXPECT_NEAR(a.energy.dissipated, b.energy.dissipated, tolerance * energy);
+  EXPECT_NEAR(a.energy.work, b.energy.work, tolerance * energy);
+}
+
+/// Runs a scene to its end in both kernels. Statics is one instant.
+void expect_agreement(Scene scene, const Plane& plane, double tolerance) {
+  scene.solver.residual_tolerance = 1e-12;
+  Simulation spatial(scene), planar(in_plane(scene, plane));
+  spatial.start();
+  planar.start();
+  ASSERT_NE(spatial.status(), RunStatus::kFailed) << spatial.failure();
+  ASSERT_NE(planar.status(), RunStatus::kFailed) << planar.failure();
+  expect_same(spatial.now(), planar.now(), tolerance);
+  while (planar.status() == RunStatus::kRunning) {
+    spatial.advance();
+    planar.advance();
+  }
+  ASSERT_EQ(spatial.status(), RunStatus::kDone) << spatial.failure();
+  ASSERT_EQ(planar.status(), RunStatus::kDone) << planar.failure();
+  expect_same(spatial.now(), planar.now(), tolerance);
+}
+
+class PlanarIsSpatial : public ::testing::TestWithParam<Plane> {};
+
+INSTANTIATE_TEST_SUITE_P(Planes, PlanarIsSpatial,
+                         ::testing::Values(coordinate_plane(), oblique_plane()));
+
+TEST_P(PlanarIsSpatial, ForACantilever) {
+  for (bool extensible : {false, true}) {
+    Scene scene = planar_cantilever(GetParam());
+    scene.effects.set(Effect::kExtension, extensible);
+    scene.effects.set(Effect::kShear, extensible);
+    expect_agreement(scene, GetParam(), 1e-9);
+  }
+}
+
+TEST_P(PlanarIsSpatial, ForEveryArcLengthIntegrator) {
+  for (ArcIntegrator integrator : {ArcIntegrator::kEuler, ArcIntegrator::kRk4,
+                                   ArcIntegrator::kGauss2, ArcIntegrator::kGauss4}) {
+    Scene scene = planar_cantilever(GetParam());
+    scene.solver.integrator = integrator;
+    expect_agreement(scene, GetParam(), 1e-9);
+  }
+}
+
+TEST_P(PlanarIsSpatial, ForTwoRodsBetweenCranksStandingStill) {
+  for (bool gravity : {false, true}) {
+    Scene scene = rfrfr(GetParam());
+    scene.effects.set(Effect::kGravity, gravity);
+    expect_agreement(scene, GetParam(), 1e-9);
+  }
+}
+
+TEST_P(PlanarIsSpatial, ForTwoRodsBetweenCranksInMotion) {
+  Scene scene = rfrfr(GetParam(), 0.4);
+  switch_on(scene, {Effect::kGravity});
+  set_dynamic(scene, 0.2, 0.01, SchemeKind::kEsdirk32);
+  expect_agreement(scene, GetParam(), 1e-9);
+}
+
+TEST_P(PlanarIsSpatial, ForASliderCrank) {
+  Scene scene = slider_crank(GetParam(), 1.2);
+  expect_agreement(scene, GetParam(), 1e-9);
+  set_dynamic(scene, 0.2, 0.005, SchemeKind::kGeneralizedAlpha);
+  expect_agreement(scene, GetParam(), 1e-9);
+}
+
+TEST_P(PlanarIsSpatial, ForAReleasedRodWithEveryEffect) {
+  for (SchemeKind scheme : {SchemeKind::kBackwardEuler, SchemeKind::kBdfAlpha,
+                            SchemeKind::kGeneralizedAlpha, SchemeKind::kEsdirk43}) {
+    Scene scene = planar_release(GetParam());
+    set_dynamic(scene, 0.1, 0.005, scheme);
+    expect_agreement(scene, GetParam(), 1e-9);
+  }
+}
+
+// Steps so short that the rod is cut into segments.
+TEST(PlanarRod, AgreesAcrossSegments) {
+  const Plane plane = coordinate_plane();
+  Scene scene = planar_release(plane);
+  scene.solver.points = 12;
+  set_dynamic(scene, 1e-3, 2e-5, SchemeKind::kEsdirk32);
+  Simulation planar(in_plane(scene, plane));
+  ASSERT_GE(planar.facts().rods[0].segments, 3);
+  // positions carry round-off of 1e-16 m, and inertia, c_v c_w rhoA L, makes forces 1e8 times as
+  // large of it
+  expect_agreement(scene, plane, 1e-7);
+}
+
+TEST(PlanarRod, FollowsALengthDrive) {
+  const Plane plane = coordinate_plane();
+  Scene scene = planar_cantilever(plane);
+  DriveSpec drive;
+  drive.rod = 0;
+  drive.quantity = DriveQuantity::kLength;
+  drive.profile = ramp(0.3, 0.4, 0.1);
+  scene.drives.push_back(drive);
+  set_dynamic(scene, 0.1, 0.005, SchemeKind::kEsdirk32);
+  expect_agreement(scene, plane, 1e-9);
+}
+
+// The joint of the two-rod robot whose rods are 1 m long, cranks at 120 and 60 degrees.
+TEST(PlanarRod, FindsThePublishedHandOfTwoRods) {
+  const Plane plane = coordinate_plane();
+  Scene scene = in_plane(rfrfr(plane), plane);
+  scene.solver.points = 20;
+  const Equilibrium equilibrium(scene);
+  ASSERT_TRUE(equilibrium.report.converged());
+  const Vec3 at = plane.transpose() * equilibrium.robot.bodies[2].p;
+  EXPECT_NEAR(at.x(), 0, 1e-9);
+  EXPECT_NEAR(at.y(), 0.927501479, 1e-9);
+}
+
+}  // namespace
+}  // namespace cprsim
