@@ -175,10 +175,13 @@ std::unique_ptr<RodModel> make_model(const Robot& robot, const RobotRod& rod,
                                      const ShootingOptions& options) {
   const RodSpec& spec = *rod.spec;
   const Pose base = robot.pose_of(rod.base);
-  if (robot.plane)
+  if (robot.plane) {
+    const bool by_tip = holds_spin(spec.tip) && !holds_spin(spec.base);
     return std::make_unique<PlanarRod>(spec.name, hold_of(robot, rod, spec.base, rod.base),
                                        hold_of(robot, rod, spec.tip, rod.tip), *robot.plane, base,
-                                       rod.section, rod.length, options);
+                                       by_tip ? robot.pose_of(rod.tip).R : base.R, rod.section,
+                                       rod.length, options);
+  }
   auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
                                              rod.section, rod.length, options);
   model->set_straight(base);

@@ -122,7 +122,7 @@ class Equations final : public Problem {
 
   Pose body_pose(int body) const { return robot_.body_pose(body); }
 
-  int unknowns_of(const Joint& joint) const { return freedoms_ + (joint.q_unknown() ? 1 : 0); }
+  int unknowns_of(const Joint& joint) const { return joint.unknowns() - 6 + freedoms_; }
 
   /// The part of a motion or wrench that the plane leaves; all of it in space (N = 6).
   template <int N>

@@ -38,6 +38,9 @@ class Joint {
 
   bool q_unknown() const { return freedom != Freedom::kNone && motion == Motion::kFree; }
 
+  /// In space; in a plane three fewer.
+  int unknowns() const { return q_unknown() ? 7 : 6; }
+
   /// Linearised closure (1) and effort row (2), dimensionless with the given length, moment and
   /// force units.
   struct Rows {

@@ -41,13 +41,13 @@ void add_row(RodResidual& r, double value, int row) {
 }  // namespace
 
 PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Mat3& plane,
-                     const Pose& X_WBase, const SectionProperties& section, double length,
-                     const ShootingOptions& options)
+                     const Pose& X_WBase, const Mat3& R_WSection, const SectionProperties& section,
+                     double length, const ShootingOptions& options)
     : name_(std::move(name)),
       base_(base),
       tip_(tip),
       plane_(plane),
-      offset_(section_offset(plane.transpose() * X_WBase.R)),
+      offset_(section_offset(plane.transpose() * R_WSection)),
       height_(plane.col(2).dot(X_WBase.p)),
       section_(section),
       options_(options),

@@ -17,11 +17,12 @@ using Mat6x3 = Eigen::Matrix<double, 6, 3>;
 
 class PlanarRod final : public RodModel {
  public:
-  /// @param plane axes e1, e2, normal as columns, world. @param X_WBase the base frame: its tangent
-  /// lies in the plane, and so does one of its principal axes unless both are alike.
+  /// Straight and unloaded from the base frame.
+  /// @param plane axes e1, e2, normal as columns, world. @param R_WSection section axes up to a turn
+  /// in the plane: the tangent lies in it, a principal axis along its normal unless both are alike.
   PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Mat3& plane,
-            const Pose& X_WBase, const SectionProperties& section, double length,
-            const ShootingOptions& options);
+            const Pose& X_WBase, const Mat3& R_WSection, const SectionProperties& section,
+            double length, const ShootingOptions& options);
 
   void prepare(const StageRates& rates, const RodForcing& forcing) override;
   RodResidual evaluate(const Port& base, const Port& tip) override;

@@ -127,7 +127,7 @@ MatX differences(const Cell& cell, const RowMatX& Y0, const RowMatX& dU) {
       at.unknown(i) += u[i];
     return at;
   };
-  return difference_jacobian(f, cell, static_cast<int>(Y0.cols()), increment, 1e-3);
+  return difference_jacobian(f, cell, static_cast<int>(Y0.cols()), increment);
 }
 
 constexpr ArcIntegrator kIntegrators[] = {ArcIntegrator::kEuler, ArcIntegrator::kGauss2,
@@ -186,9 +186,9 @@ TEST(PlanarCell, EvaluatesWhatTheSpatialCellDoes) {
     SCOPED_TRACE(c.name());
     Cell cell = make_cell(c, 5);
     const PlanarNode end = cell.evaluate();
-    const auto in_space = [](double* to, const double* v, double sign = 1) {
+    const auto in_space = [](double* to, const double* v) {
       to[0] = 0;
-      to[1] = -sign * v[1];
+      to[1] = -v[1];
       to[2] = v[0];
     };
     CellModel M;
