@@ -28,8 +28,8 @@ Mat3 plane_axes(const Vec3& normal) {
   return axes;
 }
 
-// A universal joint of a rod turns about x, then y of its frame (engine/rod/rod_end.h), and one with
-// free spin is a ball.
+// A universal joint of a rod turns about x, then y of its frame (engine/rod/rod_end.h), and one
+// with free spin is a ball.
 std::optional<PlanarHold> planar_hold(const RodEndSpec& end, const Vec3& normal) {
   switch (end.joint) {
     case EndJoint::kFree:

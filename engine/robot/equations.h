@@ -181,7 +181,7 @@ class Equations final : public Problem {
   };
 
   std::vector<Elimination> eliminations_;
-  int freedoms_ = 6;  ///< of a body
+  int freedoms_ = 6;                      ///< of a body
   Eigen::Matrix<double, 6, 3> in_plane_;  ///< motions about the normal, along e1, along e2
   int body_unknowns_ = 0, size_ = 0;
   std::vector<int> joint_offset_;

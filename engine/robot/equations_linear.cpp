@@ -142,8 +142,7 @@ void Equations::assemble_bodies() {
   if (bodies_held_) return;
   for (const RobotRod& rod : robot_.rods) {
     if (rod.base_held && rod.base.body >= 0)
-      r_.segment<N>(N * rod.base.body) -=
-          kept<N>(rod.model->wrench_on_base(robot_.port(rod.base)));
+      r_.segment<N>(N * rod.base.body) -= kept<N>(rod.model->wrench_on_base(robot_.port(rod.base)));
     if (rod.tip_held && rod.tip.body >= 0)
       r_.segment<N>(N * rod.tip.body) -= kept<N>(rod.model->wrench_on_tip(robot_.port(rod.tip)));
   }
@@ -195,8 +194,7 @@ void Equations::assemble_joints() {
       J_.block<N, N>(c, at) = kept<N>(w.child_by_lambda);
       J_.block<N, N>(c, c) += kept<N>(w.child_by_child);
     }
-    if (joint.parent >= 0 && joint.child >= 0)
-      J_.block<N, N>(p, c) += kept<N>(w.parent_by_child);
+    if (joint.parent >= 0 && joint.child >= 0) J_.block<N, N>(p, c) += kept<N>(w.parent_by_child);
     if (!joint.q_unknown()) continue;
     J_.block<N, 1>(at, at + N) = closure(rows.by_q);
     J_.block<1, N>(at + N, at) = effort(rows.effort_by_lambda).transpose();
@@ -364,8 +362,7 @@ bool Equations::follow_bodies(const std::vector<Vec6>& motions) {
       const RobotRod& rod = robot_.rods[i];
       const CondensedRod& c = condensed_[i];
       VecX rhs = c.t.head(N);
-      if (rod.base.body >= 0)
-        rhs += c.T_A.topLeftCorner(N, N) * x_.segment(N * rod.base.body, N);
+      if (rod.base.body >= 0) rhs += c.T_A.topLeftCorner(N, N) * x_.segment(N * rod.base.body, N);
       if (rod.tip_held && rod.tip.body >= 0)
         rhs += c.T_B.topLeftCorner(N, N) * x_.segment(N * rod.tip.body, N);
       x_.segment(e.offset, N) = -least_norm_solution(c.T.topLeftCorner(N, N), rhs, kSingularPivot);

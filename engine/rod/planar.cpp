@@ -293,8 +293,7 @@ std::string PlanarRod::row_name(int row) const {
 }
 
 int PlanarRod::unknown_count() const {
-  return 6 * segments() +
-         static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 3 : 1);
+  return 6 * segments() + static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 3 : 1);
 }
 
 }  // namespace cprsim

@@ -2,8 +2,8 @@
 // Multiple shooting on a rod that stays in a plane (engine/rod/planar_cell.h), with the grid,
 // segments, elimination and laws of engine/rod/shooting.h, and three unknowns where that has six.
 //
-// Its two-port is written in the plane: of CondensedRod only the leading 3 × 3 blocks are set, z has
-// three entries, zeta = (phi, dp_1, dp_2) and wrenches are (moment, force_1, force_2), phi and
+// Its two-port is written in the plane: of CondensedRod only the leading 3 × 3 blocks are set, z
+// has three entries, zeta = (phi, dp_1, dp_2) and wrenches are (moment, force_1, force_2), phi and
 // moment about the normal. RodModel::wrench_on_base() and wrench_on_tip() give world axes.
 #pragma once
 
@@ -18,8 +18,9 @@ using Mat6x3 = Eigen::Matrix<double, 6, 3>;
 class PlanarRod final : public RodModel {
  public:
   /// Straight and unloaded from the base frame.
-  /// @param plane axes e1, e2, normal as columns, world. @param R_WSection section axes up to a turn
-  /// in the plane: the tangent lies in it, a principal axis along its normal unless both are alike.
+  /// @param plane axes e1, e2, normal as columns, world. @param R_WSection section axes up to a
+  /// turn in the plane: the tangent lies in it, a principal axis along its normal unless both are
+  /// alike.
   PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Mat3& plane,
             const Pose& X_WBase, const Mat3& R_WSection, const SectionProperties& section,
             double length, const ShootingOptions& options);
@@ -36,7 +37,9 @@ class PlanarRod final : public RodModel {
   void hold_gap(double fraction) override;
   void bow(const Port& base, const Port& tip) override;
   void mark_positions() override;
+
   std::vector<Track*> tracks() override { return {&track_}; }
+
   void fill_tracks() override;
 
   Eigen::Index position_coordinates() const override {
@@ -44,6 +47,7 @@ class PlanarRod final : public RodModel {
   }
 
   void accept_tracks() override {}
+
   void start_tracks() override;
   void start_tracks_moving() override;
   Unknowns unknowns() const override;

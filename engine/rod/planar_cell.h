@@ -23,9 +23,9 @@ struct PlanarNode {
 /// What all cells of a rod share during one solve.
 struct PlanarModel {
   const ArcTableau* table = nullptr;
-  double h = 0;                  ///< cell length, m
-  double C_b = 0, C_v[2] = {};   ///< compliances of bending; of stretch C_a and shear C_s
-  double k = 0, k_J = 0;         ///< N/m²; N
+  double h = 0;                 ///< cell length, m
+  double C_b = 0, C_v[2] = {};  ///< compliances of bending; of stretch C_a and shear C_s
+  double k = 0, k_J = 0;        ///< N/m²; N
 };
 
 struct PlanarStage {

@@ -12,8 +12,7 @@ namespace {
 using Row6 = Eigen::Matrix<double, 1, 6>;
 using Mat3x6 = Eigen::Matrix<double, 3, 6>;
 using ColumnsMap = Eigen::Map<Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>>;
-using ConstColumnsMap =
-    Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>>;
+using ConstColumnsMap = Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>>;
 
 Vec6 state_units(const RodScale& s) {
   Vec6 d;
@@ -191,8 +190,7 @@ void PlanarRod::close_tip(const Place& tip, const double* Y0, CondensedRod& out)
   const double unit = held ? scale_.length : scale_.force;
   const Vec3 per_unit(1 / unit, 1 / unit, tip_ == PlanarHold::kFixed ? 1 : 1 / scale_.moment);
   const Mat6x3 Y_z = Y.leftCols<3>();
-  const Mat6x3 Y_A =
-      columns_ == kPlanarWide ? Mat6x3(Y.middleCols<3>(3)) : Mat6x3(Mat6x3::Zero());
+  const Mat6x3 Y_A = columns_ == kPlanarWide ? Mat6x3(Y.middleCols<3>(3)) : Mat6x3(Mat6x3::Zero());
   const Vec6 y = Y.col(affine_column());
   const Vec3 value = end_value(tip_, end, tip, 1) - tip_gap_;
   for (int i = 0; i < 3; ++i) {

@@ -184,8 +184,8 @@ void PlanarRod::set_unknowns(const Unknowns& u) {
 void PlanarRod::predict(const std::vector<const Unknowns*>& past,
                         const std::vector<double>& weights) {
   assert(!past.empty() && past.size() == weights.size());
-  const auto size = static_cast<Eigen::Index>(
-      3 * stages_.size() + 6 * (starts_.size() + nodes_.size()));
+  const auto size =
+      static_cast<Eigen::Index>(3 * stages_.size() + 6 * (starts_.size() + nodes_.size()));
   Unknowns sum;
   sum.values = VecX::Zero(size);
   for (std::size_t i = 0; i < past.size(); ++i) {
@@ -261,8 +261,7 @@ RodEnergy PlanarRod::energy() const {
     const double kappa_t = track_.v[strains_ + i];
     e.damping_power += w * B_b_ * kappa_t * kappa_t;
     if (extensible_)
-      e.damping_power +=
-          w * B_v_.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
+      e.damping_power += w * B_v_.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
   }
   // energy that enters per unit feed, see ShootingRod::energy
   const PlanarNode& base = nodes_.front();

@@ -84,8 +84,8 @@ class PlanarCheck {
     const bool round = s.shape == SectionShape::kCircle || s.shape == SectionShape::kAnnulus ||
                        s.size.x() == s.size.y();
     const StiffnessSpec& k = rod.stiffness;
-    return (round || k.bending_x) && k.bending_x == k.bending_y &&
-           (round || k.shear_x) && k.shear_x == k.shear_y;
+    return (round || k.bending_x) && k.bending_x == k.bending_y && (round || k.shear_x) &&
+           k.shear_x == k.shear_y;
   }
 
   bool end(const RodSpec& rod, const RodEndSpec& spec, const char* name) {
@@ -124,8 +124,7 @@ class PlanarCheck {
                    "' would be twisted",
                "turn the tip's frame, or give it spin=\"free\"");
     const Vec3& section = tip_spin && !base_spin ? at_tip : at_base;
-    const bool principal =
-        std::min(std::abs(section.x()), std::abs(section.y())) < kPlanarAngle;
+    const bool principal = std::min(std::abs(section.x()), std::abs(section.y())) < kPlanarAngle;
     if (!principal && !alike_all_around(rod))
       complain(rod.place, 10,
                "no principal axis of the section of rod '" + rod.name +
@@ -138,8 +137,8 @@ class PlanarCheck {
     if (load.follower && load.rod < 0) R = in_world(load.at).R * R;
     if (load.follower && load.rod >= 0) {
       const RodSpec& rod = scene_.rods[at(load.rod)];
-      const bool by_tip = rod.tip.joint != EndJoint::kFree && holds_spin(rod.tip) &&
-                          !holds_spin(rod.base);
+      const bool by_tip =
+          rod.tip.joint != EndJoint::kFree && holds_spin(rod.tip) && !holds_spin(rod.base);
       R = in_world(by_tip ? rod.tip.at : rod.base.at).R * R;
     }
     const Vec3 F = R * load.force, T = R * load.torque;
