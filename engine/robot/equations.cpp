@@ -17,12 +17,7 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
   condensed_.resize(robot.rods.size());
   eliminations_.resize(robot.rods.size());
   joint_gap_.assign(robot.joints.size(), Vec6::Zero());
-  in_plane_.setZero();
-  if (robot.plane) {
-    freedoms_ = 3;
-    in_plane_.topLeftCorner<3, 1>() = robot.plane->col(2);
-    in_plane_.bottomRightCorner<3, 2>() = robot.plane->leftCols<2>();
-  }
+  set_plane();
   body_unknowns_ = freedoms_ * static_cast<int>(n);
   int offset = body_unknowns_;
   for (const Joint& joint : robot.joints) {
@@ -171,8 +166,11 @@ void Equations::predict(const std::vector<const RobotUnknowns*>& past,
       p += weights[i] * past[i]->bodies[b].p;
       turn += weights[i] * log_so3(R0.transpose() * past[i]->bodies[b].R);
     }
-    robot_.bodies[b].p = p;
-    robot_.bodies[b].R = orthonormalized(R0 * exp_so3(turn));
+    Vec6 motion;
+    motion << R0 * turn, p - past[0]->bodies[b].p;
+    motion = left_by_plane(motion);
+    robot_.bodies[b].p = past[0]->bodies[b].p + motion.tail<3>();
+    robot_.bodies[b].R = orthonormalized(exp_so3(motion.head<3>()) * R0);
   }
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     Joint& joint = robot_.joints[j];
@@ -182,6 +180,7 @@ void Equations::predict(const std::vector<const RobotUnknowns*>& past,
       q += weights[i] * past[i]->joint_q[j];
       joint.lambda += weights[i] * past[i]->joint_lambda[j];
     }
+    joint.lambda = left_by_plane(joint.lambda);
     if (joint.q_unknown()) joint.q = q;
   }
 }
@@ -193,18 +192,6 @@ void Equations::note(double value, Worst where, ProblemResidual& r) {
   if (size <= r.largest && std::isfinite(value)) return;
   r.largest = std::isfinite(value) ? size : std::numeric_limits<double>::infinity();
   worst_ = where;
-}
-
-// Six rows (moment or turn, force or shift), or what of them the plane leaves.
-void Equations::note_rows(const Vec6& rows, Worst where, ProblemResidual& r) {
-  if (!robot_.plane) {
-    for (where.row = 0; where.row < 6; ++where.row)
-      note(rows[where.row], where, r);
-    return;
-  }
-  const Vec3 left = in_plane_.transpose() * rows;
-  for (where.row = 0; where.row < 3; ++where.row)
-    note(left[where.row], where, r);
 }
 
 // Newton-Euler: everything that acts, minus what inertia takes; tangents of what is not rods or
@@ -299,7 +286,7 @@ ProblemResidual Equations::evaluate() {
       Vec6 scaled = wrench_[b];
       scaled.head<3>() /= noise * unit.moment();
       scaled.tail<3>() /= noise * unit.force;
-      note_rows(scaled, {Worst::Kind::kBody, static_cast<int>(b), 0}, r);
+      note_rows(Mat3::Identity(), scaled, {Worst::Kind::kBody, static_cast<int>(b), 0}, r);
     }
   }
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
@@ -308,12 +295,8 @@ ProblemResidual Equations::evaluate() {
         joint.rows(body_pose(joint.parent), body_pose(joint.child), rates_, robot_.scale.length,
                    robot_.scale.moment(), robot_.scale.force);
     const double open = gaps_captured_ ? 1 - fraction_ : 0;
-    Vec6 closure = rows.closure - open * joint_gap_[j];
-    if (robot_.plane) {
-      closure.head<3>() = (rows.axes * closure.head<3>()).eval();
-      closure.tail<3>() = (rows.axes * closure.tail<3>()).eval();
-    }
-    note_rows(closure, {Worst::Kind::kJoint, static_cast<int>(j), 0}, r);
+    const Vec6 closure = rows.closure - open * joint_gap_[j];
+    note_rows(rows.axes, closure, {Worst::Kind::kJoint, static_cast<int>(j), 0}, r);
     if (joint.q_unknown()) note(rows.effort, {Worst::Kind::kJoint, static_cast<int>(j), 6}, r);
   }
   return r;

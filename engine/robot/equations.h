@@ -118,7 +118,7 @@ class Equations final : public Problem {
   void add_joint_wrenches();
   void add_body_loads();
   void note(double value, Worst where, ProblemResidual& r);
-  void note_rows(const Vec6& rows, Worst where, ProblemResidual& r);
+  void note_rows(const Mat3& axes, const Vec6& rows, Worst where, ProblemResidual& r);
 
   Pose body_pose(int body) const { return robot_.body_pose(body); }
 
@@ -130,6 +130,8 @@ class Equations final : public Problem {
   template <int N>
   Eigen::Matrix<double, N, N> kept(const Mat6& M) const;
   Vec6 in_space(const double* part) const;
+  Vec6 left_by_plane(const Vec6& v) const;
+  void set_plane();
 
   bool condense_rods(bool keep_all);
   template <int N>

@@ -37,11 +37,6 @@ Eigen::Matrix<double, N, N> Equations::kept(const Mat6& M) const {
     return in_plane_.transpose() * M * in_plane_;
 }
 
-Vec6 Equations::in_space(const double* part) const {
-  if (freedoms_ == 6) return Eigen::Map<const Vec6>(part);
-  return in_plane_ * Eigen::Map<const Vec3>(part);
-}
-
 template <int N>
 bool Equations::condense(bool keep_all) {
   using MatN = Eigen::Matrix<double, N, N>;
