@@ -142,6 +142,96 @@ TEST_P(PlanarIsSpatial, ForAReleasedRodWithEveryEffect) {
   }
 }
 
+TEST_P(PlanarIsSpatial, ForABodyThatStartsMoving) {
+  Scene scene = rfrfr(GetParam());
+  switch_on(scene, {Effect::kGravity, Effect::kDamping, Effect::kRotaryInertia});
+  for (RodSpec& rod : scene.rods)
+    damp(rod, 3e-3);
+  scene.bodies[2].velocity_given = true;
+  scene.bodies[2].linear_velocity = GetParam() * Vec3(0.1, 0.02, 0);
+  scene.bodies[2].angular_velocity = 0.3 * GetParam().col(2);
+  set_dynamic(scene, 0.1, 0.005, SchemeKind::kEsdirk32);
+  expect_agreement(scene, GetParam(), 1e-9);
+}
+
+// Flat springs: stiff and soft axis along the normal, and section axes that only the tip holds.
+TEST_P(PlanarIsSpatial, ForSectionsThatAreNotRound) {
+  for (double turn : {0., std::numbers::pi / 2}) {
+    Scene scene = planar_cantilever(GetParam());
+    RodSpec& rod = scene.rods[0];
+    rod.section.shape = SectionShape::kRectangle;
+    rod.section.size = {3e-3, 1e-3};
+    rod.base.at.X_BF.R *= Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+    scene.loads[0].force *= 0.2;
+    set_dynamic(scene, 0.05, 0.005, SchemeKind::kBdf2);
+    switch_on(scene, {Effect::kRotaryInertia, Effect::kExtension, Effect::kShear});
+    expect_agreement(scene, GetParam(), 1e-9);
+    // stretched rather than buckled, which in space it may do out of the plane
+    rod.tip = end_at(EndJoint::kFixed, kWorld, rod.base.at.X_BF, Vec3::UnitX());
+    rod.tip.at.X_BF.p += 0.4 * rod.base.at.X_BF.R.col(2);
+    rod.base.at.X_BF.R *= Eigen::AngleAxisd(0.7, Vec3::UnitZ()).toRotationMatrix();
+    scene.loads[0].rod_s = 0.5;
+    rod.base.joint = EndJoint::kBall;
+    scene.simulation.mode = Mode::kStatic;
+    expect_agreement(scene, GetParam(), 1e-9);
+  }
+}
+
+// What a joint in space comes down to in the plane. Between two points at rest.
+TEST_P(PlanarIsSpatial, ForEveryJointOfARod) {
+  struct End {
+    EndJoint joint;
+    Vec3 axis;
+    bool spin_free;
+  };
+
+  // in the frame's axes: x along the normal, y in the plane, z the tangent
+  const End ends[] = {
+      {EndJoint::kFixed, Vec3::UnitX(), true},      {EndJoint::kRevolute, Vec3::UnitX(), false},
+      {EndJoint::kRevolute, Vec3::UnitX(), true},   {EndJoint::kRevolute, Vec3::UnitY(), false},
+      {EndJoint::kUniversal, Vec3::UnitX(), false}, {EndJoint::kBall, Vec3::UnitX(), false}};
+  for (const End& end : ends) {
+    SCOPED_TRACE("joint " + std::to_string(static_cast<int>(end.joint)) +
+                 (end.spin_free ? ", spin free" : ""));
+    Scene scene = planar_cantilever(GetParam());
+    RodSpec& rod = scene.rods[0];
+    rod.tip = end_at(end.joint, kWorld, frame_in(GetParam(), 0.45, -0.1, 0.5), end.axis);
+    rod.tip.spin_free = end.spin_free;
+    scene.loads[0].rod_s = 0.5;
+    switch_on(scene, {Effect::kExtension});
+    expect_agreement(scene, GetParam(), 1e-9);
+  }
+}
+
+TEST(PlanarRod, ConvergesInArcLengthWithTheOrderOfItsTable) {
+  const Plane plane = coordinate_plane();
+  const auto tip = [&](ArcIntegrator integrator, int cells) {
+    Scene scene = in_plane(planar_cantilever(plane), plane);
+    switch_on(scene, {Effect::kExtension, Effect::kShear});
+    scene.solver.integrator = integrator;
+    scene.solver.points = cells;
+    const Equilibrium equilibrium(scene, 1e-13);
+    EXPECT_TRUE(equilibrium.report.converged());
+    return equilibrium.rod().points.back().position;
+  };
+  const Vec3 fine = tip(ArcIntegrator::kGauss6, 64);
+
+  struct Case {
+    ArcIntegrator integrator;
+    int cells;
+    double order;
+  };
+
+  for (const Case& c : {Case{ArcIntegrator::kEuler, 80, 1}, Case{ArcIntegrator::kGauss2, 16, 2},
+                        Case{ArcIntegrator::kGauss4, 8, 4}, Case{ArcIntegrator::kGauss6, 4, 6},
+                        Case{ArcIntegrator::kRk4, 16, 4}}) {
+    const double coarse = (tip(c.integrator, c.cells) - fine).norm(),
+                 half = (tip(c.integrator, 2 * c.cells) - fine).norm();
+    EXPECT_NEAR(std::log2(coarse / half), c.order, 0.15 * c.order)
+        << "cells " << c.cells << ", errors " << coarse << " " << half;
+  }
+}
+
 // Steps so short that the rod is cut into segments.
 TEST(PlanarRod, AgreesAcrossSegments) {
   const Plane plane = coordinate_plane();
