@@ -123,7 +123,7 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
                          : CellLaw::kExtensible;
-  kernel_ = &planar_kernel(table_->stages, law_);
+  kernel_ = planar_kernel(table_->stages, law_);
   scale_ = {L, K_b_ / (L * L), K_b_ / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
@@ -256,7 +256,7 @@ RodResidual PlanarRod::evaluate(const Port& base, const Port& tip) {
     }
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
       model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
-      kernel_->evaluate(model_, &stages_[c * S], state, state);
+      kernel_.evaluate(model_, &stages_[c * S], state, state);
       apply_load(c + 1, state);
       nodes_[c + 1] = state;
     }

@@ -113,7 +113,7 @@ class PlanarRod final : public RodModel {
   bool extensible_ = false;
   std::vector<double> grid_;
   CellLaw law_ = CellLaw::kKirchhoff;
-  const PlanarKernel* kernel_ = nullptr;
+  PlanarKernel kernel_{};
 
   // coefficients of the current solve
   PlanarModel model_;

@@ -40,16 +40,25 @@ struct PlanarStage {
 /// column, and padding.
 constexpr int kPlanarNarrow = 4, kPlanarWide = 8;
 
+using PlanarEvaluate = void (*)(const PlanarModel&, PlanarStage* stages, const PlanarNode& start,
+                                PlanarNode& end);
+
 struct PlanarKernel {
   int lifted;  ///< unknowns per cell: kappa of all stages, then v of all stages
-  void (*evaluate)(const PlanarModel&, PlanarStage* stages, const PlanarNode& start,
-                   PlanarNode& end);
+  PlanarEvaluate evaluate;
   /// As CellKernel's: Y (6 × columns) from start to end, dU (lifted × columns).
   bool (*linearize_narrow)(const PlanarModel&, const PlanarStage* stages, double* Y, double* dU);
   bool (*linearize_wide)(const PlanarModel&, const PlanarStage* stages, double* Y, double* dU);
 };
 
+PlanarEvaluate planar_evaluate(int stages, CellLaw law);
+
 /// The kernel for this machine. @param stages 1..4.
-const PlanarKernel& planar_kernel(int stages, CellLaw law);
+PlanarKernel planar_kernel(int stages, CellLaw law);
+
+/// Copies for different vector widths that this machine can run, the last being the one it does;
+/// all give the same bits.
+int planar_kernel_copies();
+PlanarKernel planar_kernel_copy(int copy, int stages, CellLaw law);
 
 }  // namespace cprsim

@@ -10,13 +10,29 @@ const PlanarKernel& planar_kernel_avx2(int stages, CellLaw law);
 const PlanarKernel& planar_kernel_avx512(int stages, CellLaw law);
 #endif
 
-const PlanarKernel& planar_kernel(int stages, CellLaw law) {
+int planar_kernel_copies() {
 #ifdef CPRSIM_X86_KERNELS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
-    return planar_kernel_avx512(stages, law);
-  if (__builtin_cpu_supports("avx2")) return planar_kernel_avx2(stages, law);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return 3;
+  if (__builtin_cpu_supports("avx2")) return 2;
 #endif
-  return planar_kernel_baseline(stages, law);
+  return 1;
+}
+
+PlanarKernel planar_kernel_copy(int copy, int stages, CellLaw law) {
+  const auto of = [&] {
+#ifdef CPRSIM_X86_KERNELS
+    if (copy == 2) return planar_kernel_avx512(stages, law);
+    if (copy == 1) return planar_kernel_avx2(stages, law);
+#endif
+    return planar_kernel_baseline(stages, law);
+  };
+  PlanarKernel kernel = of();
+  kernel.evaluate = planar_evaluate(stages, law);
+  return kernel;
+}
+
+PlanarKernel planar_kernel(int stages, CellLaw law) {
+  return planar_kernel_copy(planar_kernel_copies() - 1, stages, law);
 }
 
 }  // namespace cprsim

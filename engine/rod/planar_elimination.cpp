@@ -143,11 +143,11 @@ void PlanarRod::orthonormalize(std::size_t segment, const PlanarNode& reached, d
 
 bool PlanarRod::sweep_columns(const Place& base) {
   const auto S = static_cast<std::size_t>(table_->stages);
-  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto width = static_cast<std::size_t>(columns_);
   const auto M = static_cast<std::size_t>(segments());
   const auto linearize =
-      columns_ == kPlanarNarrow ? kernel_->linearize_narrow : kernel_->linearize_wide;
+      columns_ == kPlanarNarrow ? kernel_.linearize_narrow : kernel_.linearize_wide;
   start_columns_.resize((M + 1) * 6 * width);
   recombinations_.resize(M);
   cell_directions_.resize(static_cast<std::size_t>(cells_) * lifted * width);
@@ -266,7 +266,7 @@ Vec6 PlanarRod::wrench_on_tip(const Port& tip) const {
 
 void PlanarRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
   const auto M = static_cast<std::size_t>(segments());
-  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto width = static_cast<std::size_t>(columns_);
   start_direction_.resize(M);
   lifted_direction_.resize(static_cast<std::size_t>(cells_) * lifted);
@@ -318,7 +318,7 @@ void PlanarRod::move(double alpha) {
     s.m = kept.m + alpha * d[5];
   }
   const auto S = static_cast<std::size_t>(table_->stages);
-  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const double* d = &lifted_direction_[j / S * lifted];
     stages_[j].kappa = kept_lifted_[3 * j] + alpha * d[j % S];

@@ -87,7 +87,7 @@ void PlanarRod::start_tracks() {
 void PlanarRod::start_tracks_moving() {
   start_tracks();
   const auto S = static_cast<std::size_t>(table_->stages);
-  const auto lifted = static_cast<std::size_t>(kernel_->lifted);
+  const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto n = static_cast<Eigen::Index>(stages_.size());
   const Vec6& start = start_direction_.front();
   double dtheta = start[0];

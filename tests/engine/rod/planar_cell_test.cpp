@@ -32,9 +32,9 @@ struct Cell {
   PlanarModel model;
   std::vector<PlanarStage> stages;
   PlanarNode start{};
-  const PlanarKernel* kernel = nullptr;
+  PlanarKernel kernel{};
 
-  int lifted() const { return kernel->lifted; }
+  int lifted() const { return kernel.lifted; }
 
   double& unknown(int i) {
     const auto at = static_cast<std::size_t>(i), S = stages.size();
@@ -48,7 +48,7 @@ struct Cell {
 
   PlanarNode evaluate() {
     PlanarNode end{};
-    kernel->evaluate(model, stages.data(), start, end);
+    kernel.evaluate(model, stages.data(), start, end);
     return end;
   }
 };
@@ -67,7 +67,7 @@ Cell make_cell(const Case& c, unsigned seed) {
   Numbers numbers(seed);
   Cell cell;
   const ArcTableau& table = arc_tableau(c.integrator);
-  cell.kernel = &planar_kernel(table.stages, c.law);
+  cell.kernel = planar_kernel(table.stages, c.law);
   cell.model = {&table, 0.4, 1.1, {0.05, 0.09}, c.inertia ? 2.5 : 0, c.rotary ? 0.7 : 0};
   cell.start = node_of(numbers.vec6());
   cell.stages.assign(static_cast<std::size_t>(table.stages), PlanarStage{});
@@ -105,7 +105,7 @@ struct Linearized {
 Linearized linearize(const Cell& cell, const RowMatX& Y0) {
   Linearized out{Y0, RowMatX::Zero(cell.lifted(), Y0.cols()), false};
   const auto f =
-      Y0.cols() == kPlanarNarrow ? cell.kernel->linearize_narrow : cell.kernel->linearize_wide;
+      Y0.cols() == kPlanarNarrow ? cell.kernel.linearize_narrow : cell.kernel.linearize_wide;
   out.regular = f(cell.model, cell.stages.data(), out.Y.data(), out.dU.data());
   return out;
 }
@@ -235,6 +235,25 @@ TEST(PlanarCell, EvaluatesWhatTheSpatialCellDoes) {
       EXPECT_NEAR(spatial_end.m[i], expected.m[i], kRoundOff);
     }
   }
+}
+
+TEST(PlanarCell, EveryCopyGivesTheSameBits) {
+  for (const Case& c : cases())
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      Cell cell = make_cell(c, seed);
+      cell.evaluate();
+      const int stages = static_cast<int>(cell.stages.size());
+      for (int columns : {kPlanarNarrow, kPlanarWide}) {
+        cell.kernel = planar_kernel_copy(0, stages, c.law);
+        const Linearized first = linearize(cell, start_columns(columns));
+        for (int copy = 1; copy < planar_kernel_copies(); ++copy) {
+          cell.kernel = planar_kernel_copy(copy, stages, c.law);
+          const Linearized other = linearize(cell, start_columns(columns));
+          EXPECT_EQ(first.Y, other.Y) << c.name() << ", copy " << copy;
+          EXPECT_EQ(first.dU, other.dU) << c.name() << ", copy " << copy;
+        }
+      }
+    }
 }
 
 TEST(PlanarCell, NanIsReportedAsSingular) {
