@@ -5,6 +5,7 @@
 
 #include "engine/rod/planar_cell.h"
 
+namespace cprsim {
 namespace {  // NOLINT: on purpose, see above
 
 // A Runge-Kutta table times the cell's length.
@@ -12,7 +13,7 @@ template <int S>
 struct Steps {
   double a[S][S], b[S];
 
-  explicit Steps(const cprsim::PlanarModel& M) {
+  explicit Steps(const PlanarModel& M) {
     for (int j = 0; j < S; ++j) {
       b[j] = M.h * M.table->b[j];
       for (int k = 0; k < S; ++k)
@@ -22,3 +23,4 @@ struct Steps {
 };
 
 }  // namespace
+}  // namespace cprsim
