@@ -3,6 +3,7 @@
 // the world or in a body. Filled by scenes/loader, frozen into a Robot by engine/robot/build.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Scene {
   double max_step_size = 0.001;
   Effects effects;
   SimulationSpec simulation;
+  std::optional<Vec3> planar_normal;  ///< motion across it only; unit, world axes
   SolverSpec solver;
 
   std::vector<MeshSpec> meshes;

@@ -8,6 +8,7 @@
 
 #include "engine/math/so3.h"
 #include "engine/robot/robot.h"
+#include "engine/rod/planar.h"
 #include "engine/rod/shooting.h"
 
 namespace cprsim {
@@ -159,6 +160,33 @@ ShootingOptions shooting_options(const Scene& scene, const RodSpec& rod) {
   return o;
 }
 
+PlanarHold hold_of(const Robot& robot, const RobotRod& rod, const RodEndSpec& end,
+                   const Attachment& at) {
+  const Vec3 normal = robot.pose_of(at).R.transpose() * robot.plane->col(2);
+  const std::optional<PlanarHold> hold = planar_hold(end, normal);
+  if (!hold)
+    throw std::invalid_argument("a joint of rod '" + rod.spec->name +
+                                "' turns neither about the plane's normal nor across it");
+  return *hold;
+}
+
+std::unique_ptr<RodModel> make_model(const Robot& robot, const RobotRod& rod,
+                                     const ShootingOptions& options) {
+  const RodSpec& spec = *rod.spec;
+  const Pose base = robot.pose_of(rod.base);
+  if (robot.plane) {
+    const bool by_tip = holds_spin(spec.tip) && !holds_spin(spec.base);
+    return std::make_unique<PlanarRod>(spec.name, hold_of(robot, rod, spec.base, rod.base),
+                                       hold_of(robot, rod, spec.tip, rod.tip), *robot.plane, base,
+                                       by_tip ? robot.pose_of(rod.tip).R : base.R, rod.section,
+                                       rod.length, options);
+  }
+  auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
+                                             rod.section, rod.length, options);
+  model->set_unloaded(base);
+  return model;
+}
+
 void add_rods(Robot& robot) {
   const Scene& scene = *robot.scene;
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
@@ -181,10 +209,7 @@ void add_rods(Robot& robot) {
     }
     rod.gravity = spec.gravity && !off_for(spec, "gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
-    auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
-                                               rod.section, rod.length, options);
-    model->set_unloaded(robot.pose_of(rod.base));
-    rod.model = std::move(model);
+    rod.model = make_model(robot, rod, options);
     robot.rods.push_back(std::move(rod));
   }
 }
@@ -276,6 +301,7 @@ Robot build_robot(const Scene& scene) {
   Robot robot;
   robot.scene = &scene;
   if (scene.effects.has(Effect::kGravity)) robot.gravity = scene.gravity;
+  if (scene.planar_normal) robot.plane = plane_axes(*scene.planar_normal);
   const Welds welds(scene);
   add_bodies(robot, welds, held_groups(scene, welds));
   for (RigidBody& body : robot.bodies)

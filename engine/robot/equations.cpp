@@ -17,11 +17,12 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
   condensed_.resize(robot.rods.size());
   eliminations_.resize(robot.rods.size());
   joint_gap_.assign(robot.joints.size(), Vec6::Zero());
-  body_unknowns_ = 6 * static_cast<int>(n);
+  set_plane();
+  body_unknowns_ = freedoms_ * static_cast<int>(n);
   int offset = body_unknowns_;
   for (const Joint& joint : robot.joints) {
     joint_offset_.push_back(offset);
-    offset += joint.unknowns();
+    offset += unknowns_of(joint);
   }
   size_ = offset;
   loops_ = robot.has_joint_loops();
@@ -196,8 +197,11 @@ void Equations::predict(const std::vector<const RobotUnknowns*>& past,
       p += weights[i] * past[i]->bodies[b].p;
       turn += weights[i] * log_so3(R0.transpose() * past[i]->bodies[b].R);
     }
-    robot_.bodies[b].p = p;
-    robot_.bodies[b].R = orthonormalized(R0 * exp_so3(turn));
+    Vec6 motion;
+    motion << R0 * turn, p - past[0]->bodies[b].p;
+    motion = left_by_plane(motion);
+    robot_.bodies[b].p = past[0]->bodies[b].p + motion.tail<3>();
+    robot_.bodies[b].R = orthonormalized(exp_so3(motion.head<3>()) * R0);
   }
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     Joint& joint = robot_.joints[j];
@@ -207,6 +211,7 @@ void Equations::predict(const std::vector<const RobotUnknowns*>& past,
       q += weights[i] * past[i]->joint_q[j];
       joint.lambda += weights[i] * past[i]->joint_lambda[j];
     }
+    joint.lambda = left_by_plane(joint.lambda);
     joint.set_unknown_q(q);
   }
 }
@@ -309,9 +314,10 @@ ProblemResidual Equations::evaluate() {
       const double stiffness = robot_.bodies[b].mass * rates_.c_v * rates_.c_w;
       const double noise =
           std::max(1.0, kRoundOff * stiffness * unit.length / (unit.force * tolerance_));
-      for (int i = 0; i < 6; ++i)
-        note(wrench_[b][i] / (noise * (i < 3 ? unit.moment() : unit.force)),
-             {Worst::Kind::kBody, static_cast<int>(b), i}, r);
+      Vec6 scaled = wrench_[b];
+      scaled.head<3>() /= noise * unit.moment();
+      scaled.tail<3>() /= noise * unit.force;
+      note_rows(Mat3::Identity(), scaled, {Worst::Kind::kBody, static_cast<int>(b), 0}, r);
     }
   }
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
@@ -320,9 +326,8 @@ ProblemResidual Equations::evaluate() {
         joint.rows(body_pose(joint.parent), body_pose(joint.child), rates_, robot_.scale.length,
                    robot_.scale.moment(), robot_.scale.force);
     const double open = gaps_captured_ ? 1 - fraction_ : 0;
-    for (int i = 0; i < 6; ++i)
-      note(rows.closure[i] - open * joint_gap_[j][i], {Worst::Kind::kJoint, static_cast<int>(j), i},
-           r);
+    const Vec6 closure = rows.closure - open * joint_gap_[j];
+    note_rows(rows.axes, closure, {Worst::Kind::kJoint, static_cast<int>(j), 0}, r);
     for (std::size_t k = 0; k < joint.freedoms.size(); ++k)
       if (joint.freedoms[k].unknown >= 0)
         note(rows.effort[static_cast<Eigen::Index>(k)],
@@ -354,52 +359,15 @@ void Equations::move(double alpha) {
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
     Joint& joint = robot_.joints[j];
     const Eigen::Index at = joint_offset_[j];
-    joint.lambda = kept_.joint_lambda[j] + alpha * x_.segment<6>(at);
+    joint.lambda = kept_.joint_lambda[j] + alpha * in_space(&x_[at]);
     for (std::size_t k = 0; k < joint.freedoms.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const int unknown = joint.freedoms[k].unknown;
-      if (unknown >= 0) joint.q[i] = kept_.joint_q[j][i] + alpha * x_[at + 6 + unknown];
+      if (unknown >= 0) joint.q[i] = kept_.joint_q[j][i] + alpha * x_[at + freedoms_ + unknown];
     }
   }
   for (RobotRod& rod : robot_.rods)
     rod.model->move(alpha);
-}
-
-std::string Equations::worst_row() const {
-  static const char* const kWrench[] = {"moment x", "moment y", "moment z",
-                                        "force x",  "force y",  "force z"};
-  static const char* const kClosure[] = {"rotation x", "rotation y", "rotation z",
-                                         "position x", "position y", "position z",
-                                         "effort",     "effort 2",   "effort 3"};
-  const auto i = static_cast<std::size_t>(worst_.index);
-  switch (worst_.kind) {
-    case Worst::Kind::kBody: {
-      const int link = robot_.bodies[i].links.front();
-      return "balance of " + robot_.scene->bodies[static_cast<std::size_t>(link)].name + ", " +
-             kWrench[worst_.row];
-    }
-    case Worst::Kind::kJoint:
-      return "joint " + robot_.joints[i].spec->name + ", " + kClosure[worst_.row];
-    case Worst::Kind::kRod:
-      break;
-  }
-  return robot_.rods.empty() ? "" : robot_.rods[i].model->row_name(worst_.row);
-}
-
-long Equations::section_evaluations() const {
-  long sum = 0;
-  for (const RobotRod& rod : robot_.rods)
-    sum += rod.model->section_evaluations();
-  return sum;
-}
-
-int Equations::unknown_count() const {
-  int sum = body_unknowns_;
-  for (const Joint& joint : robot_.joints)
-    sum += joint.unknowns();
-  for (const RobotRod& rod : robot_.rods)
-    sum += rod.model->unknown_count();
-  return sum;
 }
 
 }  // namespace cprsim

@@ -8,6 +8,9 @@
 //   rod r: its own                             its own; condensed to z (6) with T z + ... = 0 and
 //   the wrenches on
 //                                              its bodies (engine/rod/rod_model.h)
+// In a planar scene each six is three: the turn about the normal and the translations along e1, e2,
+// the balances of these, and what a joint holds of them. Bodies and joints are computed in space;
+// the rest is dropped before the system is factored.
 // Rods are condensed one by one, never assembled: the global system has six unknowns a body, plus
 // joints. A rod whose T is singular hands its z up to the global system (a delayed pivot).
 #pragma once
@@ -102,6 +105,8 @@ class Equations final : public Problem {
 
   int unknown_count() const;
 
+  int body_unknowns() const { return body_unknowns_; }
+
   int constraint_count() const { return size_ - body_unknowns_; }
 
  private:
@@ -121,14 +126,35 @@ class Equations final : public Problem {
   void drive_joint(const JointDrive& drive);
   void add_body_loads();
   void note(double value, Worst where, ProblemResidual& r);
+  void note_rows(const Mat3& axes, const Vec6& rows, Worst where, ProblemResidual& r);
 
   Pose body_pose(int body) const { return robot_.body_pose(body); }
 
+  int unknowns_of(const Joint& joint) const { return joint.unknowns() - 6 + freedoms_; }
+
+  /// The part of a motion or wrench that the plane leaves; all of it in space (N = 6).
+  template <int N>
+  Eigen::Matrix<double, N, 1> kept(const Vec6& v) const;
+  template <int N>
+  Eigen::Matrix<double, N, N> kept(const Mat6& M) const;
+  Vec6 in_space(const double* part) const;
+  Vec6 left_by_plane(const Vec6& v) const;
+  void set_plane();
+
   bool condense_rods(bool keep_all);
+  template <int N>
+  bool condense(bool keep_all);
   void assemble();
+  template <int N>
+  void assemble_parts();
+  template <int N>
   void assemble_rod(std::size_t r);
+  template <int N>
   void assemble_bodies();
+  template <int N>
   void assemble_joints();
+  template <int N>
+  void distribute_to_rods();
   bool solve(double mu);
   bool solve_least_motion(const VecX& columns);
   void distribute();
@@ -162,11 +188,13 @@ class Equations final : public Problem {
   struct Elimination {
     bool delayed = false;
     int offset = -1;  ///< of z in the global system when delayed
-    Mat6 z_A, z_B;    ///< z = z_A zeta_A + z_B zeta_B + z0
+    Mat6 z_A, z_B;    ///< z = z_A zeta_A + z_B zeta_B + z0; the leading blocks in a plane
     Vec6 z0;
   };
 
   std::vector<Elimination> eliminations_;
+  int freedoms_ = 6;                      ///< of a body
+  Eigen::Matrix<double, 6, 3> in_plane_;  ///< motions about the normal, along e1, along e2
   int body_unknowns_ = 0, size_ = 0;
   std::vector<int> joint_offset_;
   MatX J_;

@@ -25,10 +25,29 @@ constexpr double kSingularLoop = 1e-12;
 
 }  // namespace
 
-bool Equations::condense_rods(bool keep_all) {
+template <int N>
+Eigen::Matrix<double, N, 1> Equations::kept(const Vec6& v) const {
+  if constexpr (N == 6)
+    return v;
+  else
+    return in_plane_.transpose() * v;
+}
+
+template <int N>
+Eigen::Matrix<double, N, N> Equations::kept(const Mat6& M) const {
+  if constexpr (N == 6)
+    return M;
+  else
+    return in_plane_.transpose() * M * in_plane_;
+}
+
+template <int N>
+bool Equations::condense(bool keep_all) {
+  using MatN = Eigen::Matrix<double, N, N>;
+  using VecN = Eigen::Matrix<double, N, 1>;
   int offset = body_unknowns_;
   for (const Joint& joint : robot_.joints)
-    offset += joint.unknowns();
+    offset += unknowns_of(joint);
   growth_ = 0;
   for (std::size_t i = 0; i < robot_.rods.size(); ++i) {
     RobotRod& rod = robot_.rods[i];
@@ -36,131 +55,178 @@ bool Equations::condense_rods(bool keep_all) {
     if (!rod.model->linearize(robot_.port(rod.base), robot_.port(rod.tip), c)) return false;
     growth_ = std::max(growth_, c.growth);
     Elimination& e = eliminations_[i];
-    const Eigen::PartialPivLU<Mat6> lu(c.T);
-    const Vec6 pivots = lu.matrixLU().diagonal().cwiseAbs();
+    const Eigen::PartialPivLU<MatN> lu(MatN(c.T.topLeftCorner<N, N>()));
+    const VecN pivots = lu.matrixLU().diagonal().cwiseAbs();
     e.delayed = keep_all || !(pivots.minCoeff() > kSingularPivot * pivots.maxCoeff());
     if (e.delayed) {
       e.offset = offset;
-      offset += 6;
+      offset += N;
       continue;
     }
     e.offset = -1;
-    e.z0 = -lu.solve(c.t);
+    e.z0.head<N>() = -lu.solve(VecN(c.t.head<N>()));
     e.z_A.setZero();
     e.z_B.setZero();
-    if (rod.base.body >= 0) e.z_A = -lu.solve(c.T_A);
-    if (rod.tip_held && rod.tip.body >= 0) e.z_B = -lu.solve(c.T_B);
+    if (rod.base.body >= 0)
+      e.z_A.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_A.topLeftCorner<N, N>()));
+    if (rod.tip_held && rod.tip.body >= 0)
+      e.z_B.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_B.topLeftCorner<N, N>()));
   }
   size_ = offset;
   return true;
 }
 
+bool Equations::condense_rods(bool keep_all) {
+  return robot_.plane ? condense<3>(keep_all) : condense<6>(keep_all);
+}
+
+template <int N>
 void Equations::assemble_rod(std::size_t i) {
+  using MatN = Eigen::Matrix<double, N, N>;
+  using VecN = Eigen::Matrix<double, N, 1>;
   const RobotRod& rod = robot_.rods[i];
   const CondensedRod& c = condensed_[i];
   const Elimination& e = eliminations_[i];
+  const auto block = [](const Mat6& M) -> MatN { return M.topLeftCorner<N, N>(); };
   const bool A_moves = rod.base_held && rod.base.body >= 0 && !bodies_held_;
   const bool B_moves = rod.tip_held && rod.tip.body >= 0 && !bodies_held_;
-  const int a = 6 * rod.base.body, b = 6 * rod.tip.body;
+  const int a = N * rod.base.body, b = N * rod.tip.body;
+  const VecN wa = c.wa.head<N>(), wb = c.wb.head<N>();
   if (e.delayed) {
-    J_.block<6, 6>(e.offset, e.offset) = c.T;
-    r_.segment<6>(e.offset) = c.t;
+    J_.block<N, N>(e.offset, e.offset) = block(c.T);
+    r_.segment<N>(e.offset) = c.t.head<N>();
     if (A_moves) {
-      J_.block<6, 6>(e.offset, a) += c.T_A;
-      J_.block<6, 6>(a, e.offset) = c.WA_z;
-      J_.block<6, 6>(a, a) += c.WA_A;
-      r_.segment<6>(a) += c.wa;
+      J_.block<N, N>(e.offset, a) += block(c.T_A);
+      J_.block<N, N>(a, e.offset) = block(c.WA_z);
+      J_.block<N, N>(a, a) += block(c.WA_A);
+      r_.segment<N>(a) += wa;
     }
     if (B_moves) {
-      J_.block<6, 6>(e.offset, b) += c.T_B;
-      J_.block<6, 6>(b, e.offset) += c.WB_z;
-      J_.block<6, 6>(b, b) += c.WB_B;
-      if (A_moves) J_.block<6, 6>(b, a) += c.WB_A;
-      r_.segment<6>(b) += c.wb;
+      J_.block<N, N>(e.offset, b) += block(c.T_B);
+      J_.block<N, N>(b, e.offset) += block(c.WB_z);
+      J_.block<N, N>(b, b) += block(c.WB_B);
+      if (A_moves) J_.block<N, N>(b, a) += block(c.WB_A);
+      r_.segment<N>(b) += wb;
     }
     return;
   }
+  const MatN z_A = block(e.z_A), z_B = block(e.z_B);
+  const VecN z0 = e.z0.head<N>();
   if (A_moves) {
-    J_.block<6, 6>(a, a) += c.WA_A + c.WA_z * e.z_A;
-    if (B_moves) J_.block<6, 6>(a, b) += c.WA_z * e.z_B;
-    r_.segment<6>(a) += c.wa + c.WA_z * e.z0;
+    const MatN WA_z = block(c.WA_z);
+    J_.block<N, N>(a, a) += block(c.WA_A) + WA_z * z_A;
+    if (B_moves) J_.block<N, N>(a, b) += WA_z * z_B;
+    r_.segment<N>(a) += wa + WA_z * z0;
   }
   if (B_moves) {
-    J_.block<6, 6>(b, b) += c.WB_B + c.WB_z * e.z_B;
-    if (A_moves) J_.block<6, 6>(b, a) += c.WB_A + c.WB_z * e.z_A;
-    r_.segment<6>(b) += c.wb + c.WB_z * e.z0;
+    const MatN WB_z = block(c.WB_z);
+    J_.block<N, N>(b, b) += block(c.WB_B) + WB_z * z_B;
+    if (A_moves) J_.block<N, N>(b, a) += block(c.WB_A) + WB_z * z_A;
+    r_.segment<N>(b) += wb + WB_z * z0;
   }
 }
 
+template <int N>
 void Equations::assemble_bodies() {
   for (std::size_t b = 0; b < robot_.bodies.size(); ++b) {
-    const auto at = 6 * static_cast<Eigen::Index>(b);
+    const auto at = N * static_cast<Eigen::Index>(b);
     if (bodies_held_) {
-      J_.block<6, 6>(at, at).setIdentity();
+      J_.block<N, N>(at, at).setIdentity();
       continue;
     }
-    J_.block<6, 6>(at, at) += body_tangent_[b];
-    r_.segment<6>(at) += wrench_[b];
+    J_.block<N, N>(at, at) += kept<N>(body_tangent_[b]);
+    r_.segment<N>(at) += kept<N>(wrench_[b]);
   }
   // the wrenches of rods are in wrench_ already, and came again with wa, wb
   if (bodies_held_) return;
   for (const RobotRod& rod : robot_.rods) {
     if (rod.base_held && rod.base.body >= 0)
-      r_.segment<6>(6 * rod.base.body) -= rod.model->wrench_on_base(robot_.port(rod.base));
+      r_.segment<N>(N * rod.base.body) -= kept<N>(rod.model->wrench_on_base(robot_.port(rod.base)));
     if (rod.tip_held && rod.tip.body >= 0)
-      r_.segment<6>(6 * rod.tip.body) -= rod.model->wrench_on_tip(robot_.port(rod.tip));
+      r_.segment<N>(N * rod.tip.body) -= kept<N>(rod.model->wrench_on_tip(robot_.port(rod.tip)));
   }
 }
 
+template <int N>
 void Equations::assemble_joints() {
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const Joint& joint = robot_.joints[j];
     const Eigen::Index at = joint_offset_[j];
     if (bodies_held_) {
-      J_.block(at, at, joint.unknowns(), joint.unknowns()).setIdentity();
+      J_.block(at, at, unknowns_of(joint), unknowns_of(joint)).setIdentity();
       continue;
     }
     const Pose P = body_pose(joint.parent), C = body_pose(joint.child);
     const Joint::Rows rows =
         joint.rows(P, C, rates_, robot_.scale.length, robot_.scale.moment(), robot_.scale.force);
     const Joint::Wrenches w = joint.wrenches(P, C);
-    const Eigen::Index p = 6 * joint.parent, c = 6 * joint.child;
-    r_.segment<6>(at) = rows.closure - (gaps_captured_ ? 1 - fraction_ : 0) * joint_gap_[j];
+    const Eigen::Index p = N * joint.parent, c = N * joint.child;
+    // closure is written in the joint's axes, what the plane leaves of it in the plane's
+    const auto to_world = [&](const auto& M) {
+      auto turned = M.eval();
+      turned.template topRows<3>() = rows.axes * M.template topRows<3>();
+      turned.template bottomRows<3>() = rows.axes * M.template bottomRows<3>();
+      return turned;
+    };
+    const auto closing = [&](const Mat6& M) -> Eigen::Matrix<double, N, N> {
+      if constexpr (N == 6)
+        return M;
+      else
+        return kept<N>(to_world(M));
+    };
+    const auto closure = [&](const Vec6& v) -> Eigen::Matrix<double, N, 1> {
+      if constexpr (N == 6)
+        return v;
+      else
+        return kept<N>(to_world(v));
+    };
+    const auto effort = [&](const auto& row) { return kept<N>(Vec6(row.transpose())); };
+    r_.segment<N>(at) =
+        closure(rows.closure - (gaps_captured_ ? 1 - fraction_ : 0) * joint_gap_[j]);
     if (joint.parent >= 0) {
-      J_.block<6, 6>(at, p) = rows.by_parent;
-      J_.block<6, 6>(p, at) = w.parent_by_lambda;
-      J_.block<6, 6>(p, p) += w.parent_by_parent;
+      J_.block<N, N>(at, p) = closing(rows.by_parent);
+      J_.block<N, N>(p, at) = kept<N>(w.parent_by_lambda);
+      J_.block<N, N>(p, p) += kept<N>(w.parent_by_parent);
     }
     if (joint.child >= 0) {
-      J_.block<6, 6>(at, c) = rows.by_child;
-      J_.block<6, 6>(c, at) = w.child_by_lambda;
-      J_.block<6, 6>(c, c) += w.child_by_child;
+      J_.block<N, N>(at, c) = closing(rows.by_child);
+      J_.block<N, N>(c, at) = kept<N>(w.child_by_lambda);
+      J_.block<N, N>(c, c) += kept<N>(w.child_by_child);
     }
-    if (joint.parent >= 0 && joint.child >= 0) J_.block<6, 6>(p, c) += w.parent_by_child;
-    J_.block<6, 6>(at, at) = rows.by_lambda;
+    if (joint.parent >= 0 && joint.child >= 0) J_.block<N, N>(p, c) += kept<N>(w.parent_by_child);
+    J_.block<N, N>(at, at) = closing(rows.by_lambda);
     for (std::size_t k = 0; k < joint.freedoms.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       if (joint.freedoms[k].unknown < 0) continue;
-      const Eigen::Index row = at + 6 + joint.freedoms[k].unknown;
-      J_.block<6, 1>(at, row) = rows.by_q.col(i);
-      J_.block<1, 6>(row, at) = rows.effort_by_lambda.row(i);
-      if (joint.parent >= 0) J_.block<1, 6>(row, p) = rows.effort_by_parent.row(i);
+      const Eigen::Index row = at + N + joint.freedoms[k].unknown;
+      J_.block<N, 1>(at, row) = closure(rows.by_q.col(i));
+      J_.block<1, N>(row, at) = effort(rows.effort_by_lambda.row(i)).transpose();
+      if (joint.parent >= 0)
+        J_.block<1, N>(row, p) = effort(rows.effort_by_parent.row(i)).transpose();
       for (std::size_t l = 0; l < joint.freedoms.size(); ++l)
         if (joint.freedoms[l].unknown >= 0)
-          J_(row, at + 6 + joint.freedoms[l].unknown) =
+          J_(row, at + N + joint.freedoms[l].unknown) =
               rows.effort_by_q(i, static_cast<Eigen::Index>(l));
       r_[row] = rows.effort[i];
     }
   }
 }
 
+template <int N>
+void Equations::assemble_parts() {
+  assemble_bodies<N>();
+  for (std::size_t i = 0; i < robot_.rods.size(); ++i)
+    assemble_rod<N>(i);
+  assemble_joints<N>();
+}
+
 void Equations::assemble() {
   J_.setZero(size_, size_);
   r_.setZero(size_);
-  assemble_bodies();
-  for (std::size_t i = 0; i < robot_.rods.size(); ++i)
-    assemble_rod(i);
-  assemble_joints();
+  if (robot_.plane)
+    assemble_parts<3>();
+  else
+    assemble_parts<6>();
 }
 
 // Force that moves a body by the unit of length: rods' stiffness, or its own inertia over the step.
@@ -173,18 +239,19 @@ double Equations::force_unit(int body) const {
 
 VecX Equations::column_units() const {
   VecX u = VecX::Ones(size_);
+  const int N = freedoms_, turns = N == 6 ? 3 : 1;
   const double length = robot_.scale.length;
-  for (Eigen::Index b = 0; b < body_unknowns_; b += 6)
-    u.segment<3>(b + 3).setConstant(length);
+  for (Eigen::Index b = 0; b < body_unknowns_; b += N)
+    u.segment(b + turns, N - turns).setConstant(length);
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const Joint& joint = robot_.joints[j];
     const Eigen::Index at = joint_offset_[j];
     const double force = std::max(force_unit(joint.parent), force_unit(joint.child));
-    u.segment<3>(at).setConstant(force * length);
-    u.segment<3>(at + 3).setConstant(force);
+    u.segment(at, turns).setConstant(force * length);
+    u.segment(at + turns, N - turns).setConstant(force);
     for (const Joint::Freedom& freedom : joint.freedoms)
       if (freedom.unknown >= 0 && freedom.measured_as_length())
-        u[at + 6 + freedom.unknown] = length;
+        u[at + N + freedom.unknown] = length;
   }
   return u;
 }
@@ -192,18 +259,19 @@ VecX Equations::column_units() const {
 VecX Equations::row_units() const {
   VecX u = VecX::Ones(size_);
   if (bodies_held_) return u;
-  for (Eigen::Index b = 0; b < body_unknowns_; b += 6) {
-    const double force = force_unit(static_cast<int>(b / 6));
-    u.segment<3>(b).setConstant(force * robot_.scale.length);
-    u.segment<3>(b + 3).setConstant(force);
+  const int N = freedoms_, turns = N == 6 ? 3 : 1;
+  for (Eigen::Index b = 0; b < body_unknowns_; b += N) {
+    const double force = force_unit(static_cast<int>(b / N));
+    u.segment(b, turns).setConstant(force * robot_.scale.length);
+    u.segment(b + turns, N - turns).setConstant(force);
   }
   // effort rows are in units of the robot's force; their multiplier's column may be larger
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const Joint& joint = robot_.joints[j];
     const double force = std::max(force_unit(joint.parent), force_unit(joint.child));
-    u.segment(joint_offset_[j] + 6, joint.unknown_coordinates())
+    u.segment(joint_offset_[j] + N, joint.unknown_coordinates())
         .setConstant(force / robot_.scale.force);
-    if (joint.is_ball()) u.segment<3>(joint_offset_[j]).setConstant(force / robot_.scale.force);
+    if (joint.is_ball()) u.segment(joint_offset_[j], turns).setConstant(force / robot_.scale.force);
   }
   return u;
 }
@@ -215,7 +283,9 @@ VecX Equations::row_units() const {
 bool Equations::solve_least_motion(const VecX& columns) {
   VecX present = VecX::Zero(size_);
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j)
-    present.segment<6>(joint_offset_[j]) = robot_.joints[j].lambda;
+    present.segment(joint_offset_[j], freedoms_) =
+        robot_.plane ? VecX(in_plane_.transpose() * robot_.joints[j].lambda)
+                     : VecX(robot_.joints[j].lambda);
   present = columns.cwiseInverse().asDiagonal() * present;
   x_ = least_norm_solution(J_, J_ * present - r_, loops_ ? kSingularLoop : kSingularSystem);
   x_ -= present;
@@ -251,19 +321,38 @@ bool Equations::solve(double mu) {
 
 Vec6 Equations::body_direction(int body) const {
   if (body < 0 || bodies_held_) return Vec6::Zero();
-  return x_.segment<6>(6 * body);
+  return in_space(&x_[freedoms_ * body]);
 }
 
-void Equations::distribute() {
+template <int N>
+void Equations::distribute_to_rods() {
+  using VecN = Eigen::Matrix<double, N, 1>;
+  const auto direction = [&](int body) -> VecN {
+    if (body < 0 || bodies_held_) return VecN::Zero();
+    return x_.segment<N>(N * body);
+  };
   for (std::size_t i = 0; i < robot_.rods.size(); ++i) {
     RobotRod& rod = robot_.rods[i];
     const Elimination& e = eliminations_[i];
-    const Vec6 zeta_A = body_direction(rod.base.body);
-    const Vec6 zeta_B = rod.tip_held ? body_direction(rod.tip.body) : Vec6(Vec6::Zero());
-    const Vec6 z =
-        e.delayed ? Vec6(x_.segment<6>(e.offset)) : Vec6(e.z_A * zeta_A + e.z_B * zeta_B + e.z0);
+    Vec6 z = Vec6::Zero(), zeta_A = Vec6::Zero();
+    const VecN a = direction(rod.base.body);
+    zeta_A.head<N>() = a;
+    if (e.delayed) {
+      z.head<N>() = x_.segment<N>(e.offset);
+    } else {
+      const VecN b = rod.tip_held ? direction(rod.tip.body) : VecN(VecN::Zero());
+      z.head<N>() =
+          e.z_A.topLeftCorner<N, N>() * a + e.z_B.topLeftCorner<N, N>() * b + e.z0.head<N>();
+    }
     rod.model->set_direction(z, zeta_A);
   }
+}
+
+void Equations::distribute() {
+  if (robot_.plane)
+    distribute_to_rods<3>();
+  else
+    distribute_to_rods<6>();
 }
 
 bool Equations::find_direction(double mu) {
@@ -280,17 +369,25 @@ bool Equations::follow_bodies(const std::vector<Vec6>& motions) {
   bodies_held_ = false;
   const bool regular = condense_rods(false);
   x_.setZero(size_);
-  for (std::size_t b = 0; b < motions.size(); ++b)
-    x_.segment<6>(6 * static_cast<Eigen::Index>(b)) = motions[b];
+  const int N = freedoms_;
+  for (std::size_t b = 0; b < motions.size(); ++b) {
+    const auto at = static_cast<Eigen::Index>(b) * N;
+    if (N == 6)
+      x_.segment<6>(at) = motions[b];
+    else
+      x_.segment<3>(at) = in_plane_.transpose() * motions[b];
+  }
   for (std::size_t i = 0; i < eliminations_.size(); ++i) {
     Elimination& e = eliminations_[i];
     if (e.delayed) {
       // a rod without stiffness in some direction: the smallest motion that closes its joints
       const RobotRod& rod = robot_.rods[i];
       const CondensedRod& c = condensed_[i];
-      Vec6 rhs = c.t + c.T_A * body_direction(rod.base.body);
-      if (rod.tip_held) rhs += c.T_B * body_direction(rod.tip.body);
-      x_.segment<6>(e.offset) = -least_norm_solution(c.T, rhs, kSingularPivot);
+      VecX rhs = c.t.head(N);
+      if (rod.base.body >= 0) rhs += c.T_A.topLeftCorner(N, N) * x_.segment(N * rod.base.body, N);
+      if (rod.tip_held && rod.tip.body >= 0)
+        rhs += c.T_B.topLeftCorner(N, N) * x_.segment(N * rod.tip.body, N);
+      x_.segment(e.offset, N) = -least_norm_solution(c.T.topLeftCorner(N, N), rhs, kSingularPivot);
     }
   }
   if (regular) distribute();

@@ -96,6 +96,7 @@ Joint::Rows Joint::rows(const Pose& X_W_parent, const Pose& X_W_child, const Sta
   const Mat3 Jt = J_P.R.transpose();
   const Vec3 e = log_so3(Jt * J_C.R), d = J_C.p - J_P.p;
   rows.closure << e, Jt * d / length;
+  rows.axes = J_P.R;
   // d log Q = J_l^-1(e) R_JP^T (phi_C - phi_JP)
   const Mat3 by_turn = right_jacobian_inverse(-e) * Jt;
   const Vec3 arm_P = J_P.p - X_W_parent.p, arm_C = J_C.p - X_W_child.p;

@@ -72,6 +72,7 @@ class Joint {
 
   int unknown_coordinates() const { return unknown_coordinates_; }
 
+  /// In space; in a plane three fewer.
   int unknowns() const { return 6 + unknown_coordinates_; }
 
   void set_scale(double length, double moment, double force);
@@ -80,6 +81,7 @@ class Joint {
   /// units; those of (2) by freedom, also of prescribed ones.
   struct Rows {
     Vec6 closure;
+    Mat3 axes;                 ///< of closure in the world
     Mat6 by_parent, by_child;  ///< of closure, by (phi, dp) of the bodies' centres of mass
     Mat6 by_lambda;
     Mat63 by_q;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,7 @@ struct Robot {
   std::vector<JointDrive> joint_drives;
   Vec3 gravity = Vec3::Zero();  ///< 0 unless the effect is on
   RobotScale scale;
+  std::optional<Mat3> plane;  ///< of a planar scene: e1, e2 and the normal as columns, world
 
   Pose pose_of(const Attachment& a) const;
 

@@ -26,6 +26,8 @@
 
 namespace cprsim {
 
+/// A planar rod fills the leading 3 × 3 blocks and threes only, in the plane's axes
+/// (engine/rod/planar.h).
 struct CondensedRod {
   Mat6 T, T_A, T_B;
   Vec6 t;
@@ -83,7 +85,8 @@ class RodModel {
   /// singular.
   virtual bool linearize(const Port& base, const Port& tip, CondensedRod& out) = 0;
 
-  /// Newton direction of the rod's own unknowns for given outer increments.
+  /// Newton direction of the rod's own unknowns for given outer increments, in the axes and of the
+  /// size that linearize() gives its two-port.
   virtual void set_direction(const Vec6& z, const Vec6& zeta_A) = 0;
   /// Remembers the unknowns; move() then sets them to the remembered ones plus alpha times the
   /// direction.

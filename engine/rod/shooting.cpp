@@ -8,31 +8,9 @@
 #include <limits>
 
 #include "engine/math/so3.h"
+#include "engine/rod/arc_grid.h"
 
 namespace cprsim {
-namespace {
-
-// Nodes: the stations, and between them cells as equal as the count allows.
-std::vector<double> make_grid(int cells, std::vector<double> stations) {
-  std::sort(stations.begin(), stations.end());
-  std::vector<double> ends{0};
-  for (double s : stations)
-    if (s > ends.back() + 1e-9 && s < 1 - 1e-9) ends.push_back(s);
-  ends.push_back(1);
-  std::vector<double> grid{0};
-  for (std::size_t i = 1; i < ends.size(); ++i) {
-    const double piece = ends[i] - ends[i - 1];
-    const int n = std::max(1, static_cast<int>(std::lround(cells * piece)));
-    for (int k = 1; k <= n; ++k)
-      grid.push_back(k == n ? ends[i] : ends[i - 1] + piece * k / n);
-  }
-  return grid;
-}
-
-constexpr double kSegmentGrowth = 6;  // e^6 eps stays far below any tolerance; design section 5
-
-}  // namespace
-
 double growth_exponent(const SectionProperties& section, const Vec3& K_bt, const Vec3& K_se,
                        double length, double k, double N) {
   const double EI = std::min(K_bt.x(), K_bt.y());
@@ -54,7 +32,7 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
       section_(section),
       options_(options),
       table_(&arc_tableau(options.integrator)),
-      grid_(make_grid(options.cells, options.stations)) {
+      grid_(arc_grid(options.cells, options.stations)) {
   cells_ = static_cast<int>(grid_.size()) - 1;
   extensible_ = options.extension || options.shear;
   const auto n = static_cast<std::size_t>(cells_ * table_->stages);
@@ -62,12 +40,7 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
   nodes_.assign(grid_.size(), NodeState{});
   starts_.assign(1, NodeState{});
   segment_first_ = {0, static_cast<std::size_t>(cells_)};
-  for (double s : options_.stations) {
-    const auto at = std::min_element(grid_.begin(), grid_.end(), [s](double a, double b) {
-      return std::abs(a - s) < std::abs(b - s);
-    });
-    load_at_.push_back(static_cast<std::size_t>(at - grid_.begin()));
-  }
+  load_at_ = nodes_at(grid_, options_.stations);
   const auto points = static_cast<Eigen::Index>(n + grid_.size());
   const auto strains = static_cast<Eigen::Index>(options_.damping ? n * (extensible_ ? 2 : 1) : 0);
   track_.resize(3 * (points + strains));
@@ -201,11 +174,9 @@ void ShootingRod::choose_segments() {
   const double layer = forcing_.length / std::max(1.0, growth_);
   const double EI = scale_.moment * scale_.length;
   port_scale_ = {layer, EI / (layer * layer), EI / layer};
-  const int wanted = std::clamp(static_cast<int>(std::ceil(growth_ / kSegmentGrowth)), 1, cells_);
+  const int wanted = wanted_segments(growth_, cells_, segments());
   // before the first evaluation there are no states to start segments from
   if (wanted == segments() || !evaluated_) return;
-  // fewer segments only if clearly fewer do: keeps warm starts
-  if (wanted < segments() && 2 * wanted > segments()) return;
   const NodeState base = starts_.front();
   segment_first_.assign(static_cast<std::size_t>(wanted) + 1, 0);
   starts_.assign(static_cast<std::size_t>(wanted), base);

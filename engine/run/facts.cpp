@@ -47,8 +47,9 @@ ProblemFacts problem_facts(const Robot& robot, const Equations& equations, const
   const Scene& scene = *robot.scene;
   facts.integrator = arc_tableau(scene.solver.integrator.value_or(kDefaultIntegrator)).name;
   facts.scheme = scene.simulation.mode == Mode::kDynamic ? to_string(plan.scheme.kind) : "statics";
+  facts.planar = robot.plane.has_value();
   facts.step = plan.adaptive ? 0 : plan.step;
-  facts.body_unknowns = 6 * static_cast<int>(robot.bodies.size());
+  facts.body_unknowns = equations.body_unknowns();
   facts.constraint_unknowns = equations.constraint_count();
   for (const RobotRod& rod : robot.rods)
     facts.rods.push_back(rod_facts(rod, scene, plan));

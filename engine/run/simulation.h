@@ -48,7 +48,8 @@ struct RodFacts {
 
 struct ProblemFacts {
   std::string integrator, scheme;
-  double step = 0;  ///< fixed step, or 0 when adaptive
+  bool planar = false;  ///< of the kernel: everything moves in a plane
+  double step = 0;      ///< fixed step, or 0 when adaptive
   int body_unknowns = 0, constraint_unknowns = 0;
   std::vector<RodFacts> rods;
 };

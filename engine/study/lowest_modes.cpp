@@ -8,10 +8,15 @@ namespace {
 
 constexpr double kNoInertia = 1e-14;
 
+// A motion with neither stiffness nor inertia, like the spin of a rod between two balls, would
+// leave the right side singular; this much stiffness, relative to each coordinate's own, sends it
+// to infinity.
+constexpr double kTrace = 1e-12;
+
 double find_shift(const MatX& K, const MatX& M) {
   if (is_positive_definite(K)) return 0;
   double shift = 1e-9 * K.diagonal().cwiseAbs().maxCoeff() / M.diagonal().maxCoeff();
-  while (!is_positive_definite(K + shift * M) && std::isfinite(shift))
+  while (!is_positive_definite(K + shift * M) && shift < 1e300)
     shift *= 10;
   return shift;
 }
@@ -21,8 +26,10 @@ double find_shift(const MatX& K, const MatX& M) {
 SymmetricModes lowest_modes(const MatX& K, const MatX& M) {
   SymmetricModes lowest;
   if (K.rows() == 0 || !(M.diagonal().maxCoeff() > 0)) return lowest;
-  const double shift = find_shift(K, M);
-  const SymmetricModes all = symmetric_modes(M, K + shift * M);
+  MatX stiffness = K;
+  stiffness.diagonal() += kTrace * K.diagonal().cwiseAbs();
+  const double shift = find_shift(stiffness, M);
+  const SymmetricModes all = symmetric_modes(M, stiffness + shift * M);
   const Eigen::Index n = all.values.size();
   Eigen::Index count = 0;
   while (count < n && all.values[n - 1 - count] > kNoInertia * all.values[n - 1])

@@ -94,9 +94,11 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
   const auto point = (n - 6) / static_cast<Eigen::Index>(field.points.size());
   for (Eigen::Index i = 6; i < n; i += point)
     unit.segment<3>(i).setConstant(1 / rod.length);
-  const MatX Cx = C.leftCols(n) * unit.asDiagonal();
-  const MatX Z = unit.asDiagonal() * kernel_of(Cx, kDependent);
-  const MatX X = unit.asDiagonal() * least_norm_solutions(Cx, -C.rightCols<12>(), kDependent);
+  MatX motions = unit.asDiagonal();
+  if (robot.plane) motions *= planar_motions(field, robot.plane->col(2));
+  const MatX Cx = C.leftCols(n) * motions;
+  const MatX Z = motions * kernel_of(Cx, kDependent);
+  const MatX X = motions * least_norm_solutions(Cx, -C.rightCols<12>(), kDependent);
   // what a rod cannot follow, like a change of distance where it is straight and does not stretch
   out.demands = kernel_of(Cx.transpose(), kDependent).transpose() * C.rightCols<12>();
   out.inner = Z.cols();
@@ -244,6 +246,20 @@ void RobotVariation::assemble(MatX& stiffness, MatX& mass) const {
   }
 }
 
+/// Bodies of a planar robot do not leave their plane.
+void add_plane(const Robot& robot, RobotVariation& v) {
+  if (!robot.plane) return;
+  const Mat3& axes = *robot.plane;  // e1, e2, normal
+  const Eigen::Index before = v.C.rows();
+  const auto bodies = static_cast<Eigen::Index>(robot.bodies.size());
+  v.C.conservativeResize(before + 3 * bodies, Eigen::NoChange);
+  v.C.bottomRows(3 * bodies).setZero();
+  for (Eigen::Index b = 0; b < bodies; ++b) {
+    v.C.block<2, 3>(before + 3 * b, 6 * b) = axes.leftCols<2>().transpose();
+    v.C.block<1, 3>(before + 3 * b + 2, 6 * b + 3) = axes.col(2).transpose() / robot.scale.length;
+  }
+}
+
 RobotVariation robot_variation(const Robot& robot, Inertia inertia) {
   RobotVariation v;
   const bool metric = inertia == Inertia::kMetric;
@@ -261,6 +277,7 @@ RobotVariation robot_variation(const Robot& robot, Inertia inertia) {
   add_bodies(robot, metric, v);
   add_joints(robot, v);
   add_demands(v);
+  add_plane(robot, v);
   return v;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/study/rod_variation.h"
 
+#include <cmath>
+
 #include "engine/math/so3.h"
 
 namespace cprsim {
@@ -30,6 +32,28 @@ struct Motion {
 };
 
 }  // namespace
+
+MatX planar_motions(const RodField& field, const Vec3& normal) {
+  const Layout layout(field);
+  const Eigen::Index n = layout.at(field.points.size());
+  Vec3 e1 = normal.unitOrthogonal();
+  MatX basis = MatX::Zero(n, n);
+  Eigen::Index count = 0;
+  const auto add = [&](Eigen::Index at, const Vec3& direction) {
+    basis.block<3, 1>(at, count++) = direction;
+  };
+  add(0, normal);
+  add(3, e1);
+  add(3, normal.cross(e1));
+  for (std::size_t j = 0; j < field.points.size(); ++j) {
+    add(layout.at(j), normal);
+    for (std::size_t e = 0; e < layout.strains.size(); ++e)
+      // one of the section's axes is the normal
+      if (std::abs(field.points[j].R.col(layout.strains[e]).dot(normal)) < 0.5)
+        basis(layout.at(j) + 3 + static_cast<Eigen::Index>(e), count++) = 1;
+  }
+  return basis.leftCols(count);
+}
 
 RodVariation rod_variation(const RodField& field, bool rotary) {
   const Layout layout(field);

@@ -27,6 +27,9 @@ struct RodVariation {
   Eigen::Index size() const { return K.rows(); }
 };
 
+/// Coordinates of motions that stay in the plane across `normal`, as columns over all coordinates.
+MatX planar_motions(const RodField& field, const Vec3& normal);
+
 /// @param rotary whether sections have rotary inertia
 RodVariation rod_variation(const RodField& field, bool rotary);
 

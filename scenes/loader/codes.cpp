@@ -56,6 +56,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"E508", "a drive leaves its joint's limits or makes a rod's length zero or negative"},
       {"E509", "a size that would need unreasonable memory or time"},
       {"E510", "a rod cannot reach between two places that do not move"},
+      {"E511", "a planar scene in which something leaves the plane"},
       {"E520", "part of the scene language, but not available in this version"},
       {"W501", "an implausible material or section: check the units (SI only)"},
       {"W502", "a rod too thick for rod theory (slenderness below 5)"},

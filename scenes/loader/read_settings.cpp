@@ -181,6 +181,16 @@ void override_effects(Reading& r) {
   apply(r.options.without, false);
 }
 
+void read_plane(Reading& r, const Node& node) {
+  const Attribute* normal = node.attribute("normal");
+  const auto value = normal ? parse_vec3(normal->value) : std::nullopt;
+  if (!value) return;
+  if (value->norm() < 1e-9)
+    r.report.bad_value("E506", node, *normal, "the plane's normal has length 0");
+  else
+    r.scene.planar_normal = value->normalized();
+}
+
 void read_simulation(Reading& r, const Node& node) {
   SimulationSpec& simulation = r.scene.simulation;
   simulation.place = node.place;
@@ -191,6 +201,7 @@ void read_simulation(Reading& r, const Node& node) {
   simulation.duration = number_of(node.child("duration"), 0);
   if (const Node* seed = node.child("seed"))
     simulation.seed = static_cast<unsigned>(parse_integer(seed->text).value_or(0));
+  if (const Node* planar = node.child("planar")) read_plane(r, *planar);
   if (const Node* initial = node.child("initial"))
     simulation.initial_static = initial->value("solve") == "static";
   if (simulation.mode != Mode::kStatic && simulation.duration <= 0 && !node.broken &&

@@ -61,7 +61,8 @@ std::string contents_text(const Scene& scene) {
 }
 
 std::string solver_text(const ProblemFacts& facts) {
-  std::string text = fmt::format("  solver     shooting, {}", facts.integrator);
+  std::string text = fmt::format("  solver     shooting, {}{}",
+                                 facts.planar ? "planar kernel, " : "", facts.integrator);
   if (!facts.scheme.empty()) text += ", " + facts.scheme;
   if (facts.step > 0) text += fmt::format(", step {} s", facts.step);
   return text + fmt::format("; {} body unknowns, {} constraint unknowns\n", facts.body_unknowns,
@@ -195,6 +196,7 @@ Json to_json(const Scene& scene, const ProblemFacts& facts) {
                {"hash", scene.hash},
                {"mode", mode_name(scene.simulation.mode)},
                {"duration", scene.simulation.duration},
+               {"kernel", facts.planar ? "planar" : "spatial"},
                {"integrator", facts.integrator},
                {"scheme", facts.scheme},
                {"step", facts.step},

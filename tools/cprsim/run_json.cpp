@@ -79,6 +79,7 @@ Json rod_json(const RodFacts& rod) {
 Json method_json(const Scene& scene, const ProblemFacts& facts) {
   Json method = {{"mode", mode_name(scene.simulation.mode)},
                  {"method", method_name(scene.solver.method)},
+                 {"kernel", facts.planar ? "planar" : "spatial"},
                  {"integrator", facts.integrator},
                  {"scheme", facts.scheme},
                  {"step", facts.step},

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the equations say of themselves: names of rows, counts.
+#include "engine/robot/equations.h"
+
+namespace cprsim {
+
+std::string Equations::worst_row() const {
+  static const char* const kWrench[] = {"moment x", "moment y", "moment z",
+                                        "force x",  "force y",  "force z"};
+  static const char* const kClosure[] = {"rotation x", "rotation y", "rotation z",
+                                         "position x", "position y", "position z",
+                                         "effort",     "effort 2",   "effort 3"};
+  static const char* const kPlanarWrench[] = {"moment about the normal", "force 1", "force 2"};
+  static const char* const kPlanarClosure[] = {"angle", "position 1", "position 2"};
+  const auto i = static_cast<std::size_t>(worst_.index);
+  switch (worst_.kind) {
+    case Worst::Kind::kBody: {
+      const int link = robot_.bodies[i].links.front();
+      return "balance of " + robot_.scene->bodies[static_cast<std::size_t>(link)].name + ", " +
+             (robot_.plane ? kPlanarWrench : kWrench)[worst_.row];
+    }
+    case Worst::Kind::kJoint:
+      return "joint " + robot_.joints[i].spec->name + ", " +
+             (robot_.plane && worst_.row < 3 ? kPlanarClosure : kClosure)[worst_.row];
+    case Worst::Kind::kRod:
+      break;
+  }
+  return robot_.rods.empty() ? "" : robot_.rods[i].model->row_name(worst_.row);
+}
+
+long Equations::section_evaluations() const {
+  long sum = 0;
+  for (const RobotRod& rod : robot_.rods)
+    sum += rod.model->section_evaluations();
+  return sum;
+}
+
+int Equations::unknown_count() const {
+  int sum = body_unknowns_;
+  for (const Joint& joint : robot_.joints)
+    sum += unknowns_of(joint);
+  for (const RobotRod& rod : robot_.rods)
+    sum += rod.model->unknown_count();
+  return sum;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Setting up, coefficients of a solve, and the residual sweep; equations in
+// engine/rod/planar_cell.h.
+#include "engine/rod/planar.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "engine/rod/arc_grid.h"
+
+namespace cprsim {
+namespace {
+
+/// Section axes in plane axes, turned so that the tangent points along e1: what is left is a turn
+/// about the tangent.
+Mat3 section_offset(const Mat3& R_PS) {
+  const double angle = std::atan2(R_PS(1, 2), R_PS(0, 2)), c = std::cos(angle), s = std::sin(angle);
+  const Vec3 x = R_PS.col(0);
+  Vec3 turned(0, c * x.y() - s * x.x(), x.z());
+  turned.normalize();
+  Mat3 offset;
+  offset.col(0) = turned;
+  offset.col(1) = Vec3::UnitX().cross(turned);
+  offset.col(2) = Vec3::UnitX();
+  return offset;
+}
+
+void add_row(RodResidual& r, double value, int row) {
+  r.sum_squares += value * value;
+  const double size = std::abs(value);
+  const bool finite = std::isfinite(value);
+  if (!finite) r.finite = false;
+  if (size > r.largest || !finite) {
+    r.largest = finite ? size : std::numeric_limits<double>::infinity();
+    r.worst_row = row;
+  }
+}
+
+}  // namespace
+
+PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Mat3& plane,
+                     const Pose& X_WBase, const Mat3& R_WSection, const SectionProperties& section,
+                     double length, const ShootingOptions& options)
+    : name_(std::move(name)),
+      base_(base),
+      tip_(tip),
+      plane_(plane),
+      offset_(section_offset(plane.transpose() * R_WSection)),
+      height_(plane.col(2).dot(X_WBase.p)),
+      section_(section),
+      options_(options),
+      table_(&arc_tableau(options.integrator)),
+      grid_(arc_grid(options.cells, options.stations)) {
+  K_b_ = about_normal(section.K_bt);
+  B_b_ = options.damping ? about_normal(section.B_bt) : 0;
+  rhoI_ = about_normal(section.rhoJ);
+  K_v_ = {section.K_se.z(), along_section(section.K_se)};
+  B_v_ = options.damping ? Vec2(section.B_se.z(), along_section(section.B_se)) : Vec2(Vec2::Zero());
+  cells_ = static_cast<int>(grid_.size()) - 1;
+  extensible_ = options.extension || options.shear;
+  const auto n = static_cast<std::size_t>(cells_ * table_->stages);
+  stages_.assign(n, PlanarStage{});
+  nodes_.assign(grid_.size(), PlanarNode{});
+  load_at_ = nodes_at(grid_, options_.stations);
+  const auto stages = static_cast<Eigen::Index>(n);
+  angles_ = 2 * static_cast<Eigen::Index>(n + grid_.size());
+  strains_ = angles_ + (options.rotary_inertia ? stages : 0);
+  track_.resize(strains_ + (options.damping ? stages * (extensible_ ? 3 : 1) : 0));
+  forcing_.length = length;
+  const Vec3 tangent = plane_.transpose() * X_WBase.R.col(2);
+  set_straight(std::atan2(tangent.y(), tangent.x()), plane_.leftCols<2>().transpose() * X_WBase.p);
+}
+
+double PlanarRod::about_normal(const Vec3& diagonal) const {
+  const Vec3 normal = offset_.row(2);
+  return normal.dot(diagonal.cwiseProduct(normal));
+}
+
+double PlanarRod::along_section(const Vec3& diagonal) const {
+  const Vec3 across = offset_.row(1);
+  return across.dot(diagonal.cwiseProduct(across));
+}
+
+void PlanarRod::set_straight(double theta, const Vec2& p) {
+  PlanarNode state{};
+  state.theta = theta;
+  state.c = std::cos(theta);
+  state.s = std::sin(theta);
+  state.p[0] = p.x();
+  state.p[1] = p.y();
+  starts_.assign(1, state);
+  segment_first_ = {0, static_cast<std::size_t>(cells_)};
+  for (PlanarStage& stage : stages_) {
+    stage.kappa = 0;
+    stage.v[0] = 1;
+    stage.v[1] = 0;
+  }
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    nodes_[k] = state;
+    nodes_[k].p[0] += state.c * grid_[k] * forcing_.length;
+    nodes_[k].p[1] += state.s * grid_[k] * forcing_.length;
+  }
+  evaluated_ = false;
+}
+
+void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
+  rates_ = rates;
+  forcing_ = forcing;
+  assert(forcing_.loads.size() == load_at_.size());
+  const double L = forcing_.length;
+  model_.table = table_;
+  model_.C_b = 1 / (K_b_ + rates.c_v * B_b_);
+  // rigid modes are zeros: shear and extension each only if the scene lists them
+  model_.C_v[0] = options_.extension ? 1 / (K_v_.x() + rates.c_v * B_v_.x()) : 0;
+  model_.C_v[1] = options_.shear ? 1 / (K_v_.y() + rates.c_v * B_v_.y()) : 0;
+  model_.C_v[0] += forcing_.axial_softness * L * L / K_b_;
+  model_.k = section_.rhoA * rates.c_v * rates.c_w + forcing_.relaxation;
+  const bool rotary = options_.rotary_inertia && rates.dynamic();
+  model_.k_J = rotary ? rhoI_ * rates.c_v * rates.c_w : 0;
+  const bool stretches = extensible_ || forcing.axial_softness > 0;
+  law_ = !stretches      ? CellLaw::kKirchhoff
+         : model_.k == 0 ? CellLaw::kExtensibleStatic
+                         : CellLaw::kExtensible;
+  kernel_ = planar_kernel(table_->stages, law_);
+  scale_ = {L, K_b_ / (L * L), K_b_ / L};
+  // positions carry round-off eps L; inertia turns it into forces eps k L²
+  constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
+  noise_ = std::max(1.0, kRoundOff * model_.k * std::pow(L, 4) / (K_b_ * forcing_.tolerance));
+  update_stage_inputs();
+  choose_segments();
+}
+
+void PlanarRod::update_stage_inputs() {
+  const auto n = static_cast<Eigen::Index>(stages_.size());
+  const Vec2 weight = plane_.leftCols<2>().transpose() * (section_.rhoA * forcing_.gravity);
+  const bool dynamic = rates_.dynamic();
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    PlanarStage& stage = stages_[j];
+    const auto i = static_cast<Eigen::Index>(j);
+    Vec2 b = -weight;
+    stage.kappa0 = 0;
+    stage.v0[0] = 1;
+    stage.v0[1] = stage.b_J = 0;
+    if (dynamic) {
+      b += section_.rhoA *
+           (rates_.c_w * track_.x_h.segment<2>(2 * i) + track_.v_h.segment<2>(2 * i));
+      if (options_.rotary_inertia)
+        stage.b_J = rhoI_ * (rates_.c_w * track_.x_h[angles_ + i] + track_.v_h[angles_ + i]);
+      if (options_.damping) {
+        stage.kappa0 = -model_.C_b * B_b_ * track_.x_h[strains_ + i];
+        // v0 = C (K z - B v_h): with C = 1/(K + c_v B) this is z - C B (c_v z + v_h)
+        if (extensible_) {
+          const Eigen::Index at = strains_ + n + 2 * i;
+          stage.v0[0] -= model_.C_v[0] * B_v_.x() * (rates_.c_v + track_.x_h[at]);
+          stage.v0[1] -= model_.C_v[1] * B_v_.y() * track_.x_h[at + 1];
+        }
+      }
+    }
+    if (forcing_.relaxation > 0) b -= forcing_.relaxation * marked_[j];
+    stage.b[0] = b.x();
+    stage.b[1] = b.y();
+  }
+}
+
+// Segments from the growth exponent; cells are shared out evenly. Starts move to the nodes last
+// reached.
+void PlanarRod::choose_segments() {
+  constexpr double kNoTorsion = std::numeric_limits<double>::infinity();
+  const Vec3 K_bt(1 / model_.C_b, 1 / model_.C_b, kNoTorsion);
+  const auto stiffness = [&](double C) { return C > 0 ? 1 / C : 0; };
+  const Vec3 K_se(stiffness(model_.C_v[1]), 0, stiffness(model_.C_v[0]));
+  double N = std::hypot(starts_.front().n[0], starts_.front().n[1]);
+  if (evaluated_)
+    for (const PlanarNode& node : nodes_)
+      N = std::max(N, std::hypot(node.n[0], node.n[1]));
+  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k, N);
+  const double layer = forcing_.length / std::max(1.0, growth_);
+  port_scale_ = {layer, K_b_ / (layer * layer), K_b_ / layer};
+  const int wanted = wanted_segments(growth_, cells_, segments());
+  // before the first evaluation there are no states to start segments from
+  if (wanted == segments() || !evaluated_) return;
+  const PlanarNode base = starts_.front();
+  segment_first_.assign(static_cast<std::size_t>(wanted) + 1, 0);
+  starts_.assign(static_cast<std::size_t>(wanted), base);
+  for (int g = 0; g <= wanted; ++g)
+    segment_first_[static_cast<std::size_t>(g)] = static_cast<std::size_t>(cells_ * g / wanted);
+  for (std::size_t g = 1; g < starts_.size(); ++g)
+    starts_[g] = nodes_[segment_first_[g]];
+}
+
+void PlanarRod::apply_load(std::size_t node, PlanarNode& state) const {
+  for (std::size_t i = 0; i < load_at_.size(); ++i) {
+    if (load_at_[i] != node) continue;
+    const PointLoad& load = forcing_.loads[i];
+    Vec3 F, T;
+    if (load.follower) {
+      const Vec3 f = offset_ * load.force;
+      F = {state.c * f.x() - state.s * f.y(), state.s * f.x() + state.c * f.y(), 0};
+      T = offset_ * load.torque;
+    } else {
+      F = plane_.transpose() * load.force;
+      T = plane_.transpose() * load.torque;
+    }
+    state.n[0] -= F.x();
+    state.n[1] -= F.y();
+    state.m -= T.z();
+  }
+}
+
+PlanarRod::Place PlanarRod::place(const Port& port) const {
+  const Vec2 t = plane_.leftCols<2>().transpose() * port.R.col(2);
+  const double norm = t.norm();
+  return {t.x() / norm, t.y() / norm, plane_.leftCols<2>().transpose() * port.p,
+          plane_.leftCols<2>().transpose() * port.arm};
+}
+
+// Position and angle, or moment, or force and moment: what should vanish at an end.
+Vec3 PlanarRod::end_value(PlanarHold hold, const PlanarNode& end, const Place& at,
+                          double noise) const {
+  const double m = end.m / (noise * scale_.moment);
+  if (hold == PlanarHold::kFree)
+    return {end.n[0] / (noise * scale_.force), end.n[1] / (noise * scale_.force), m};
+  const double angle = hold == PlanarHold::kFixed
+                           ? std::atan2(end.s * at.c - end.c * at.s, end.c * at.c + end.s * at.s)
+                           : m;
+  return {(end.p[0] - at.p.x()) / scale_.length, (end.p[1] - at.p.y()) / scale_.length, angle};
+}
+
+RodResidual PlanarRod::evaluate(const Port& base, const Port& tip) {
+  const auto S = static_cast<std::size_t>(table_->stages);
+  RodResidual r;
+  int row = 0;
+  auto add = [&](double value) { add_row(r, value, row++); };
+  auto add_end = [&](const Vec3& values) {
+    for (int i = 0; i < 3; ++i)
+      add(values[i]);
+  };
+  const double force = scale_.force * noise_, moment = scale_.moment * noise_;
+  add_end(end_value(base_, starts_.front(), place(base), noise_) - base_gap_);
+  PlanarNode state = starts_.front();
+  apply_load(0, state);
+  nodes_[0] = state;
+  for (std::size_t g = 0; g + 1 < segment_first_.size(); ++g) {
+    if (g > 0) {
+      // continuity between what the last segment reached and where this one starts
+      const PlanarNode& start = starts_[g];
+      add(state.theta - start.theta);
+      for (int i = 0; i < 2; ++i)
+        add((state.p[i] - start.p[i]) / scale_.length);
+      for (int i = 0; i < 2; ++i)
+        add((state.n[i] - start.n[i]) / force);
+      add((state.m - start.m) / moment);
+      state = start;
+    }
+    for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
+      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+      kernel_.evaluate(model_, &stages_[c * S], state, state);
+      apply_load(c + 1, state);
+      nodes_[c + 1] = state;
+    }
+  }
+  section_evaluations_ += static_cast<long>(stages_.size());
+  for (const PlanarStage& stage : stages_) {
+    add(stage.residual_kappa * scale_.length / noise_);
+    if (law_ == CellLaw::kExtensible)
+      for (double v : stage.residual_v)
+        add(v / noise_);
+  }
+  add_end(end_value(tip_, state, place(tip), noise_) - tip_gap_);
+  evaluated_ = r.finite;
+  return r;
+}
+
+std::string PlanarRod::row_name(int row) const {
+  static const char* const kRows[][3] = {{"force 1", "force 2", "moment"},
+                                         {"position 1", "position 2", "moment"},
+                                         {"position 1", "position 2", "angle"}};
+  if (row < 3) return "base of " + name_ + ", " + kRows[static_cast<int>(base_)][row];
+  row -= 3;
+  const int joins = 6 * (segments() - 1);
+  if (row < joins) return "join " + std::to_string(row / 6 + 1) + " between segments of " + name_;
+  row -= joins;
+  const int each = law_ == CellLaw::kExtensible ? 3 : 1;
+  const int law = static_cast<int>(stages_.size()) * each;
+  if (row < law) {
+    const int cell = row / each / table_->stages;
+    return "strain law of " + name_ + " in cell " + std::to_string(cell + 1) + " of " +
+           std::to_string(cells_);
+  }
+  return "tip of " + name_ + ", " + kRows[static_cast<int>(tip_)][row - law];
+}
+
+int PlanarRod::unknown_count() const {
+  return 6 * segments() + static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 3 : 1);
+}
+
+}  // namespace cprsim

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Multiple shooting on a rod that stays in a plane (engine/rod/planar_cell.h), with the grid,
+// segments, elimination and laws of engine/rod/shooting.h, and three unknowns where that has six.
+//
+// Its two-port is written in the plane: of CondensedRod only the leading 3 × 3 blocks are set, z
+// has three entries, zeta = (phi, dp_1, dp_2) and wrenches are (moment, force_1, force_2), phi and
+// moment about the normal. RodModel::wrench_on_base() and wrench_on_tip() give world axes.
+#pragma once
+
+#include "engine/model/planar.h"
+#include "engine/rod/planar_cell.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+
+using Mat6x3 = Eigen::Matrix<double, 6, 3>;
+
+class PlanarRod final : public RodModel {
+ public:
+  /// Straight and unloaded from the base frame.
+  /// @param plane axes e1, e2, normal as columns, world. @param R_WSection section axes up to a
+  /// turn in the plane: the tangent lies in it, a principal axis along its normal unless both are
+  /// alike.
+  PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Mat3& plane,
+            const Pose& X_WBase, const Mat3& R_WSection, const SectionProperties& section,
+            double length, const ShootingOptions& options);
+
+  void prepare(const StageRates& rates, const RodForcing& forcing) override;
+  RodResidual evaluate(const Port& base, const Port& tip) override;
+  bool linearize(const Port& base, const Port& tip, CondensedRod& out) override;
+  void set_direction(const Vec6& z, const Vec6& zeta_A) override;
+  void keep() override;
+  void move(double alpha) override;
+  Vec6 wrench_on_base(const Port& base) const override;
+  Vec6 wrench_on_tip(const Port& tip) const override;
+  void capture_gap(const Port& base, const Port& tip) override;
+  void hold_gap(double fraction) override;
+  void bow(const Port& base, const Port& tip) override;
+  void mark_positions() override;
+
+  std::vector<Track*> tracks() override { return {&track_}; }
+
+  void fill_tracks() override;
+
+  Eigen::Index position_coordinates() const override {
+    return 2 * static_cast<Eigen::Index>(stages_.size() + nodes_.size());
+  }
+
+  void accept_tracks() override {}
+
+  void start_tracks() override;
+  void start_tracks_moving() override;
+  Unknowns unknowns() const override;
+  void set_unknowns(const Unknowns& u) override;
+  void predict(const std::vector<const Unknowns*>& past,
+               const std::vector<double>& weights) override;
+  RodSample observe() const override;
+  RodField field() const override;
+  RodEnergy energy() const override;
+  std::string row_name(int row) const override;
+
+  int cells() const override { return cells_; }
+
+  int segments() const override { return static_cast<int>(segment_first_.size()) - 1; }
+
+  int unknown_count() const override;
+
+  long section_evaluations() const override { return section_evaluations_; }
+
+  double growth_exponent() const override { return growth_; }
+
+ private:
+  /// A joint frame in the plane; `ref` is p minus the body's reference point.
+  struct Place {
+    double c, s;
+    Vec2 p, arm;
+  };
+
+  Place place(const Port& port) const;
+  Vec3 end_value(PlanarHold hold, const PlanarNode& end, const Place& at, double noise) const;
+  void set_straight(double theta, const Vec2& p);
+  void choose_segments();
+  void update_stage_inputs();
+  void apply_load(std::size_t node, PlanarNode& state) const;
+  Vec3 planar_wrench(const PlanarNode& node, const Place& at) const;
+  Vec6 to_world(const Vec3& wrench) const;
+
+  // linearisation
+  void start_columns(const Place& base, double* Y) const;
+  void apply_load_columns(std::size_t node, const PlanarNode& state, double* Y) const;
+  bool sweep_columns(const Place& base);
+  void orthonormalize(std::size_t segment, const PlanarNode& reached, double* Y);
+  void close_tip(const Place& tip, const double* Y, CondensedRod& out) const;
+  void close_base(const Place& base, CondensedRod& out) const;
+
+  int affine_column() const { return columns_ == kPlanarNarrow ? 3 : 6; }
+
+  /// Of the section's axes: stiffness, damping or inertia that motion in the plane meets.
+  double about_normal(const Vec3& diagonal) const;
+  double along_section(const Vec3& diagonal) const;
+
+  std::string name_;
+  PlanarHold base_, tip_;
+  Mat3 plane_;                ///< e1, e2, normal
+  Mat3 offset_;               ///< section axes in plane axes at theta = 0
+  double height_ = 0;         ///< of the rod's plane along the normal
+  double K_b_ = 0, B_b_ = 0;  ///< bending
+  Vec2 K_v_, B_v_;            ///< stretch and shear
+  double rhoI_ = 0;
+  SectionProperties section_;
+  ShootingOptions options_;
+  const ArcTableau* table_;
+  int cells_ = 0;
+  bool extensible_ = false;
+  std::vector<double> grid_;
+  CellLaw law_ = CellLaw::kKirchhoff;
+  PlanarKernel kernel_{};
+
+  // coefficients of the current solve
+  PlanarModel model_;
+  StageRates rates_;
+  RodForcing forcing_;
+  RodScale scale_, port_scale_;
+  double noise_ = 1;
+  double growth_ = 0;
+
+  // unknowns and what the last evaluation found
+  std::vector<PlanarStage> stages_;
+  std::vector<PlanarNode> starts_;  ///< segment starts; [0] is the base, before any load there
+  std::vector<PlanarNode> nodes_;   ///< grid nodes as reached
+  std::vector<std::size_t> segment_first_;
+  std::vector<std::size_t> load_at_;
+  Vec3 tip_gap_ = Vec3::Zero(), base_gap_ = Vec3::Zero();
+  Vec3 tip_gap_start_ = Vec3::Zero(), base_gap_start_ = Vec3::Zero();
+  std::vector<Vec2> marked_;
+  bool evaluated_ = false;
+
+  // linearisation
+  int columns_ = kPlanarNarrow;
+  std::vector<double> start_columns_;    ///< 6 × columns a segment, and once more for the tip
+  std::vector<double> cell_directions_;  ///< lifted × columns per cell
+
+  struct Recombination {
+    Mat3 R, G_A;
+    Vec3 g;
+  };
+
+  std::vector<Recombination> recombinations_;
+  double transition_ = 0;
+
+  // direction and remembered unknowns
+  std::vector<Vec6> start_direction_;
+  std::vector<double> lifted_direction_;
+  std::vector<PlanarNode> kept_starts_;
+  std::vector<double> kept_lifted_;
+
+  /// Stage and node positions, stage angles (rotary inertia), stage curvatures and stretches
+  /// (damping). Angles of one axis are integrated like positions.
+  Track track_;
+  Eigen::Index angles_ = 0, strains_ = 0;  ///< where those begin
+  long section_evaluations_ = 0;
+};
+
+}  // namespace cprsim

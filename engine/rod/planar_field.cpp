@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/rod/planar.h"
+
+namespace cprsim {
+
+RodField PlanarRod::field() const {
+  RodField f;
+  f.table = table_;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c)
+    f.cells.push_back((grid_[c + 1] - grid_[c]) * forcing_.length);
+  const auto rotation = [&](double c, double s) -> Mat3 {
+    Mat3 turn = Mat3::Identity();
+    turn.topLeftCorner<2, 2>() << c, -s, s, c;
+    return plane_ * turn * offset_;
+  };
+  const auto in_world = [&](const double* v) -> Vec3 { return plane_ * Vec3(v[0], v[1], 0); };
+  for (const PlanarStage& stage : stages_)
+    f.points.push_back({rotation(stage.c, stage.s), in_world(stage.tau), in_world(stage.n),
+                        stage.m * plane_.col(2)});
+  const auto end_state = [&](const PlanarNode& node) {
+    NodeState state{};
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.R) = rotation(node.c, node.s);
+    Eigen::Map<Vec3>(state.p) = plane_ * Vec3(node.p[0], node.p[1], height_);
+    Eigen::Map<Vec3>(state.n) = in_world(node.n);
+    Eigen::Map<Vec3>(state.m) = node.m * plane_.col(2);
+    return state;
+  };
+  f.base = end_state(starts_.front());
+  f.tip = end_state(nodes_.back());
+  f.K_bt = section_.K_bt;
+  if (options_.shear) f.K_se.head<2>() = section_.K_se.head<2>();
+  if (options_.extension) f.K_se.z() = section_.K_se.z();
+  f.rhoA = section_.rhoA;
+  f.rhoJ = section_.rhoJ;
+  return f;
+}
+
+}  // namespace cprsim

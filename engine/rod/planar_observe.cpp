@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a planar rod shows to time schemes, predictors and observers; as
+// engine/rod/shooting_observe.cpp.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "engine/rod/planar.h"
+
+namespace cprsim {
+namespace {
+
+/// Curvature, stretch and shear, linear through the stage values of a cell, at fraction x of it.
+Vec3 strain_along(const PlanarStage* stages, const ArcTableau& table, double x) {
+  const int last = table.stages - 1;
+  const auto strain = [&](int j) { return Vec3(stages[j].kappa, stages[j].v[0], stages[j].v[1]); };
+  if (last == 0 || table.c[last] == table.c[0]) return strain(0);
+  const double f = (x - table.c[0]) / (table.c[last] - table.c[0]);
+  return (1 - f) * strain(0) + f * strain(last);
+}
+
+}  // namespace
+
+void PlanarRod::capture_gap(const Port& base, const Port& tip) {
+  // a free end has no joint that could gape
+  if (base_ != PlanarHold::kFree)
+    base_gap_start_ = end_value(base_, starts_.front(), place(base), 1);
+  if (tip_ != PlanarHold::kFree) tip_gap_start_ = end_value(tip_, nodes_.back(), place(tip), 1);
+}
+
+void PlanarRod::hold_gap(double fraction) {
+  base_gap_ = fraction * base_gap_start_;
+  tip_gap_ = fraction * tip_gap_start_;
+}
+
+// The same bow as ShootingRod's, to the side to which that bends about the section's x axis.
+void PlanarRod::bow(const Port& base, const Port& tip) {
+  const Place at = place(base);
+  const Vec2 chord = place(tip).p - at.p;
+  const double ratio = chord.norm() / forcing_.length;
+  if (ratio > 0.999) return;
+  const bool turns = base_ != PlanarHold::kFixed && ratio > 1e-6;
+  set_straight(turns ? std::atan2(chord.y(), chord.x()) : std::atan2(at.s, at.c), at.p);
+  const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
+  const int axis = std::abs(offset_(2, 0)) >= std::abs(offset_(2, 1)) ? 0 : 1;
+  const double side = std::copysign(A * k / forcing_.length, offset_(2, axis));
+  const auto S = static_cast<std::size_t>(table_->stages);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / S;
+    const double s = grid_[cell] + (grid_[cell + 1] - grid_[cell]) * table_->c[j % S];
+    stages_[j].kappa = side * std::cos(k * s);
+  }
+}
+
+void PlanarRod::mark_positions() {
+  marked_.resize(stages_.size());
+  for (std::size_t j = 0; j < stages_.size(); ++j)
+    marked_[j] = {stages_[j].p[0], stages_[j].p[1]};
+}
+
+void PlanarRod::fill_tracks() {
+  double* x = track_.x.data();
+  for (const PlanarStage& stage : stages_)
+    x = std::copy_n(stage.p, 2, x);
+  for (const PlanarNode& node : nodes_)
+    x = std::copy_n(node.p, 2, x);
+  if (options_.rotary_inertia)
+    for (const PlanarStage& stage : stages_)
+      *x++ = stage.theta;
+  if (!options_.damping) return;
+  for (const PlanarStage& stage : stages_)
+    *x++ = stage.kappa;
+  if (!extensible_) return;
+  for (const PlanarStage& stage : stages_)
+    x = std::copy_n(stage.v, 2, x);
+}
+
+void PlanarRod::start_tracks() {
+  fill_tracks();
+  track_.set_start(VecX(track_.x), VecX::Zero(track_.x.size()));
+}
+
+// Velocities that a direction of the unknowns gives stages and nodes, cell by cell:
+// dtheta_j = dtheta_a + h sum a_jk dkappa_k, dtau_j = dtheta_j e3 × tau_j + dv_t t + dv_d d,
+// dp_j = dp_a + h sum a_jk dtau_k, and where v is no unknown it follows from the law.
+void PlanarRod::start_tracks_moving() {
+  start_tracks();
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto lifted = static_cast<std::size_t>(kernel_.lifted);
+  const auto n = static_cast<Eigen::Index>(stages_.size());
+  const Vec6& start = start_direction_.front();
+  double dtheta = start[0];
+  Vec2 dp = start.segment<2>(1), dn = start.segment<2>(3);
+  const auto turn_followers = [&](std::size_t node) {
+    for (std::size_t l = 0; l < load_at_.size(); ++l) {
+      if (load_at_[l] != node || !forcing_.loads[l].follower) continue;
+      const PlanarNode& at = nodes_[node];
+      const Vec3 f = offset_ * forcing_.loads[l].force;
+      dn -= dtheta * Vec2(-(at.s * f.x() + at.c * f.y()), at.c * f.x() - at.s * f.y());
+    }
+  };
+  turn_followers(0);
+  VecX v = VecX::Zero(track_.x.size());
+  v.segment<2>(2 * n) = dp;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c) {
+    const double h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+    const PlanarStage* stage = &stages_[c * S];
+    const double* d = &lifted_direction_[c * lifted];
+    Vec2 dtau[kMaxStages];
+    for (std::size_t j = 0; j < S; ++j) {
+      const PlanarStage& at = stage[j];
+      double turn = dtheta;
+      for (std::size_t k = 0; k < S; ++k)
+        turn += h * table_->a[j][k] * d[k];
+      const Vec2 t(at.c, at.s), across(-at.s, at.c), force(at.n[0], at.n[1]);
+      Vec2 dv = Vec2::Zero();
+      if (law_ == CellLaw::kExtensible) dv = {d[S + 2 * j], d[S + 2 * j + 1]};
+      if (law_ == CellLaw::kExtensibleStatic)
+        dv = {model_.C_v[0] * (t.dot(dn) + turn * across.dot(force)),
+              model_.C_v[1] * (across.dot(dn) - turn * t.dot(force))};
+      dtau[j] = turn * Vec2(-at.tau[1], at.tau[0]) + dv[0] * t + dv[1] * across;
+      const auto i = static_cast<Eigen::Index>(c * S + j);
+      if (options_.rotary_inertia) v[angles_ + i] = turn;
+      if (!options_.damping) continue;
+      v[strains_ + i] = d[j];
+      if (extensible_) v.segment<2>(strains_ + n + 2 * i) = dv;
+    }
+    for (std::size_t j = 0; j < S; ++j) {
+      Vec2 at = dp;
+      for (std::size_t k = 0; k < S; ++k)
+        at += h * table_->a[j][k] * dtau[k];
+      v.segment<2>(2 * static_cast<Eigen::Index>(c * S + j)) = at;
+    }
+    for (std::size_t j = 0; j < S; ++j) {
+      dp += h * table_->b[j] * dtau[j];
+      dtheta += h * table_->b[j] * d[j];
+    }
+    turn_followers(c + 1);
+    v.segment<2>(2 * (n + static_cast<Eigen::Index>(c) + 1)) = dp;
+  }
+  track_.set_start(VecX(track_.x), v);
+}
+
+// values: curvature, stretch and shear of every stage, then six numbers for every segment's start,
+// then for every node.
+RodModel::Unknowns PlanarRod::unknowns() const {
+  Unknowns u;
+  u.values.resize(
+      static_cast<Eigen::Index>(3 * stages_.size() + 6 * (starts_.size() + nodes_.size())));
+  double* to = u.values.data();
+  for (const PlanarStage& stage : stages_) {
+    *to++ = stage.kappa;
+    to = std::copy_n(stage.v, 2, to);
+  }
+  for (const auto* list : {&starts_, &nodes_})
+    for (const PlanarNode& node : *list) {
+      *to++ = node.theta;
+      to = std::copy_n(node.p, 2, to);
+      to = std::copy_n(node.n, 2, to);
+      *to++ = node.m;
+    }
+  return u;
+}
+
+void PlanarRod::set_unknowns(const Unknowns& u) {
+  const double* from = u.values.data();
+  for (PlanarStage& stage : stages_) {
+    stage.kappa = *from++;
+    std::copy_n(from, 2, stage.v);
+    from += 2;
+  }
+  const auto set = [](PlanarNode& node, const double* x) {
+    node = {x[0], {x[1], x[2]}, {x[3], x[4]}, x[5], std::cos(x[0]), std::sin(x[0])};
+  };
+  const std::size_t all = (static_cast<std::size_t>(u.values.size()) - 3 * stages_.size()) / 6;
+  const std::size_t then = all - nodes_.size();
+  set(starts_.front(), from);
+  // where segments were cut differently their starts are the nodes reached
+  for (std::size_t g = 1; g < starts_.size(); ++g)
+    set(starts_[g], from + 6 * (then == starts_.size() ? g : then + segment_first_[g]));
+}
+
+void PlanarRod::predict(const std::vector<const Unknowns*>& past,
+                        const std::vector<double>& weights) {
+  assert(!past.empty() && past.size() == weights.size());
+  const auto size =
+      static_cast<Eigen::Index>(3 * stages_.size() + 6 * (starts_.size() + nodes_.size()));
+  Unknowns sum;
+  sum.values = VecX::Zero(size);
+  for (std::size_t i = 0; i < past.size(); ++i) {
+    if (past[i]->values.size() != size) {
+      set_unknowns(*past.back());
+      return;
+    }
+    sum.values += weights[i] * past[i]->values;
+  }
+  set_unknowns(sum);
+}
+
+RodSample PlanarRod::observe() const {
+  RodSample sample;
+  sample.length = forcing_.length;
+  sample.radius = section_.half_width;
+  sample.points.resize(nodes_.size());
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto n = static_cast<Eigen::Index>(stages_.size());
+  const Mat3 to_section = offset_.transpose();
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    RodPoint& point = sample.points[k];
+    const PlanarNode& node = nodes_[k];
+    Mat3 turn = Mat3::Identity();
+    turn.topLeftCorner<2, 2>() << node.c, -node.s, node.s, node.c;
+    point.s = grid_[k];
+    point.position = plane_ * Vec3(node.p[0], node.p[1], height_);
+    point.rotation = plane_ * turn * offset_;
+    point.force = plane_.leftCols<2>() * Vec2(node.n[0], node.n[1]);
+    point.moment = node.m * plane_.col(2);
+    point.velocity =
+        plane_.leftCols<2>() * track_.v.segment<2>(2 * (n + static_cast<Eigen::Index>(k)));
+    // strains from both neighbouring cells
+    Vec3 strain = Vec3::Zero();
+    double sides = 0;
+    if (k > 0) {
+      strain += strain_along(&stages_[(k - 1) * S], *table_, 1);
+      sides += 1;
+    }
+    if (k + 1 < nodes_.size()) {
+      strain += strain_along(&stages_[k * S], *table_, 0);
+      sides += 1;
+    }
+    strain /= sides;
+    point.curvature = strain[0] * to_section.col(2);
+    point.shear_stretch = to_section * Vec3(strain[1], strain[2], 0);
+  }
+  return sample;
+}
+
+RodEnergy PlanarRod::energy() const {
+  RodEnergy e;
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto n = static_cast<Eigen::Index>(stages_.size());
+  const double EA = options_.extension ? K_v_.x() : 0, GA = options_.shear ? K_v_.y() : 0;
+  const auto density = [&](const Vec3& strain) {
+    return 0.5 * (K_b_ * strain[0] * strain[0] + EA * (strain[1] - 1) * (strain[1] - 1) +
+                  GA * strain[2] * strain[2]);
+  };
+  const Vec2 weight = plane_.leftCols<2>().transpose() * (section_.rhoA * forcing_.gravity);
+  const double at_height = height_ * section_.rhoA * plane_.col(2).dot(forcing_.gravity);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / S;
+    const double w = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
+    const PlanarStage& stage = stages_[j];
+    const auto i = static_cast<Eigen::Index>(j);
+    e.kinetic += w * 0.5 * section_.rhoA * track_.v.segment<2>(2 * i).squaredNorm();
+    if (options_.rotary_inertia)
+      e.kinetic += w * 0.5 * rhoI_ * track_.v[angles_ + i] * track_.v[angles_ + i];
+    e.elastic += w * density({stage.kappa, stage.v[0], stage.v[1]});
+    e.gravity -= w * (weight.dot(Vec2(stage.p[0], stage.p[1])) + at_height);
+    if (!options_.damping) continue;
+    const double kappa_t = track_.v[strains_ + i];
+    e.damping_power += w * B_b_ * kappa_t * kappa_t;
+    if (extensible_)
+      e.damping_power += w * B_v_.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
+  }
+  // energy that enters per unit feed, see ShootingRod::energy
+  const PlanarNode& base = nodes_.front();
+  const Vec3 strain = strain_along(stages_.data(), *table_, 0);
+  const double n_t = base.c * base.n[0] + base.s * base.n[1],
+               n_d = base.c * base.n[1] - base.s * base.n[0];
+  e.feed_power = density(strain) - n_t * strain[1] - n_d * strain[2] - base.m * strain[0] -
+                 weight.dot(Vec2(base.p[0], base.p[1])) - at_height;
+  return e;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene with <planar> may hold nothing that would leave the plane: the planar kernel could not
+// answer for it. Planes at different heights along the normal are fine; a rod stays in one.
+#include <cmath>
+
+#include "engine/model/planar.h"
+#include "scenes/loader/reading.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr const char* kCode = "E511";
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+class PlanarCheck {
+ public:
+  PlanarCheck(Reading& r, const Vec3& normal) : r_(r), scene_(r.scene), normal_(normal) {}
+
+  void run(const Node& world) {
+    gravity(world);
+    for (const JointSpec& joint : scene_.joints)
+      check(joint);
+    for (std::size_t k = 0; k < scene_.rods.size(); ++k)
+      check(scene_.rods[k]);
+    for (const LoadSpec& load : scene_.loads)
+      check(load);
+    velocities();
+  }
+
+ private:
+  void complain(const Place& place, int caret, const std::string& message,
+                const std::string& suggestion = "leave <planar> out: the spatial model takes it") {
+    r_.report.at(Severity::kError, kCode, place, caret, message).suggestion = suggestion;
+  }
+
+  /// Whether a vector of any length has a part that matters along the normal, or across it.
+  bool leaves(const Vec3& v) const {
+    return std::abs(v.dot(normal_)) > kPlanarAngle * std::max(v.norm(), 1e-300);
+  }
+
+  bool turns(const Vec3& v) const {
+    return v.cross(normal_).norm() > kPlanarAngle * std::max(v.norm(), 1e-300);
+  }
+
+  Pose in_world(const FrameRef& frame) const {
+    return frame.body == kWorld ? frame.X_BF : scene_.bodies[at(frame.body)].X_WB * frame.X_BF;
+  }
+
+  void gravity(const Node& world) {
+    if (!scene_.effects.has(Effect::kGravity) || !leaves(scene_.gravity)) return;
+    const Node* node = world.child("gravity");
+    const std::string message = "gravity, " + words(scene_.gravity) + " m/s2, leaves the plane";
+    if (node)
+      r_.report.error(kCode, *node, message, "give a <gravity> in the plane");
+    else
+      r_.report
+          .at(Severity::kError, kCode,
+              scene_.effects.asked_at[static_cast<std::size_t>(Effect::kGravity)], 7, message)
+          .suggestion = "give a <gravity> in the plane";
+  }
+
+  static std::string words(const Vec3& v) {
+    return format_number(v.x()) + " " + format_number(v.y()) + " " + format_number(v.z());
+  }
+
+  void check(const JointSpec& joint) {
+    if (joint.kind == JointKind::kFixed || joint.kind == JointKind::kBall) return;
+    if (joint.kind == JointKind::kUniversal || joint.kind == JointKind::kScrew ||
+        joint.kind == JointKind::kCylindrical)
+      complain(joint.place, 5, "joint '" + joint.name + "' is of a type that moves in space");
+    const Vec3 axis = in_world({joint.parent, joint.X_PJ}).R * joint.axis;
+    const bool slides = joint.kind == JointKind::kPrismatic;
+    if (slides ? leaves(axis) : turns(axis))
+      complain(joint.place, 5,
+               "the axis of joint '" + joint.name + "', " + words(axis) + " in the world, " +
+                   (slides ? "does not lie in the plane" : "is not along the plane's normal"));
+  }
+
+  /// The same bending and shear stiffness about every axis across the tangent.
+  static bool alike_all_around(const RodSpec& rod) {
+    const SectionSpec& s = rod.section;
+    const bool round = s.shape == SectionShape::kCircle || s.shape == SectionShape::kAnnulus ||
+                       s.size.x() == s.size.y();
+    const StiffnessSpec& k = rod.stiffness;
+    return (round || k.bending_x) && k.bending_x == k.bending_y && (round || k.shear_x) &&
+           k.shear_x == k.shear_y;
+  }
+
+  bool end(const RodSpec& rod, const RodEndSpec& spec, const char* name) {
+    const int caret = static_cast<int>(std::string_view(name).size());
+    const std::string whose = std::string(name) + " of rod '" + rod.name + "'";
+    const Mat3 R = in_world(spec.at).R;
+    if (leaves(R.col(2))) {
+      complain(spec.place, caret,
+               "the tangent at the " + whose + ", " + words(R.col(2)) + ", leaves the plane");
+      return false;
+    }
+    if (!planar_hold(spec, R.transpose() * normal_)) {
+      complain(spec.place, caret,
+               "the joint at the " + whose +
+                   " turns neither about the plane's normal nor about an axis in it",
+               "turn its frame or its axis, or use joint=\"ball\"");
+      return false;
+    }
+    return true;
+  }
+
+  void check(const RodSpec& rod) {
+    if (!rod.rest_curvature.isZero())
+      complain(rod.place, 10,
+               "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
+    const bool tip_held = rod.tip.joint != EndJoint::kFree;
+    if (!end(rod, rod.base, "base") || (tip_held && !end(rod, rod.tip, "tip"))) return;
+    const Pose base = in_world(rod.base.at), tip = tip_held ? in_world(rod.tip.at) : base;
+    const double apart = (tip.p - base.p).dot(normal_);
+    if (std::abs(apart) > kPlanarAngle * std::max(rod.length, 1e-9))
+      complain(rod.tip.place, 3,
+               "the ends of rod '" + rod.name + "' are " + format_number(std::abs(apart)) +
+                   " m apart along the plane's normal");
+    const bool base_spin = holds_spin(rod.base), tip_spin = tip_held && holds_spin(rod.tip);
+    const Vec3 at_base = base.R.transpose() * normal_, at_tip = tip.R.transpose() * normal_;
+    if (base_spin && tip_spin && (at_base - at_tip).norm() > kPlanarAngle)
+      complain(rod.tip.place, 3,
+               "the tip's frame is turned about the tangent against the base's: rod '" + rod.name +
+                   "' would be twisted",
+               "turn the tip's frame, or give it spin=\"free\"");
+    const Vec3& section = tip_spin && !base_spin ? at_tip : at_base;
+    const bool principal = std::min(std::abs(section.x()), std::abs(section.y())) < kPlanarAngle;
+    if (!principal && !alike_all_around(rod))
+      complain(rod.place, 10,
+               "no principal axis of the section of rod '" + rod.name +
+                   "' lies along the plane's normal: it would bend out of the plane",
+               "turn the frames of its ends about the tangent");
+  }
+
+  void check(const LoadSpec& load) {
+    Mat3 R = load.R_expressed;
+    if (load.follower && load.rod < 0) R = in_world(load.at).R * R;
+    if (load.follower && load.rod >= 0) {
+      const RodSpec& rod = scene_.rods[at(load.rod)];
+      const bool by_tip =
+          rod.tip.joint != EndJoint::kFree && holds_spin(rod.tip) && !holds_spin(rod.base);
+      R = in_world(by_tip ? rod.tip.at : rod.base.at).R * R;
+    }
+    const Vec3 F = R * load.force, T = R * load.torque;
+    if (leaves(F))
+      complain(load.place, 11, "the force " + words(F) + " N leaves the plane");
+    else if (turns(T))
+      complain(load.place, 11, "the torque " + words(T) + " N m is not about the plane's normal");
+  }
+
+  void velocities() {
+    for (const BodySpec& body : scene_.bodies)
+      if (body.velocity_given && (leaves(body.linear_velocity) || turns(body.angular_velocity)))
+        complain(body.place, 4, "the initial velocity of " + body.name + " leaves the plane");
+  }
+
+  Reading& r_;
+  const Scene& scene_;
+  Vec3 normal_;
+};
+
+}  // namespace
+
+void check_planar(Reading& r, const Node& world) {
+  // what could not be read has its own error, and would give more here
+  if (r.scene.planar_normal && !r.report.failed())
+    PlanarCheck(r, *r.scene.planar_normal).run(world);
+}
+
+}  // namespace cprsim
