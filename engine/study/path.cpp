@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solve/newton.h"
 #include "engine/study/path_events.h"
 
 namespace cprsim {
@@ -157,6 +158,28 @@ Path follow_branch(StaticStudy& study, const PathProblem& problem, const PathEve
     return Follower(system, options).run(start);
   }
   return {};
+}
+
+Release release(StaticStudy& study, const PathProblem& problem, const PathPoint& point,
+                const PathEvent& event, int side) {
+  PathSystem system(study, problem);
+  study.restore(point.state);
+  study.equations().predict(
+      {&point.state.unknowns, &event.displaced.unknowns, &event.station.state.unknowns},
+      {1, 1.0 * side, -1.0 * side});
+  study.restore(study.state());
+  SolveOptions options;
+  options.tolerance = study.tolerance();
+  options.max_iterations = 40;
+  Release out;
+  out.solve = relaxation(study.equations(), options);
+  PathStation end;
+  end.state = study.state();
+  end.y = VecX::Constant(1, point.lambda);
+  end.s = point.s;
+  out.end = judged_point(study, end, nullptr);
+  out.moved = system.motion(end.state.unknowns, point.state.unknowns).norm();
+  return out;
 }
 
 }  // namespace cprsim

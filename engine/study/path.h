@@ -57,7 +57,7 @@ enum class PathEnd {
 const char* to_string(PathEnd end);
 
 struct PathOptions {
-  double first_step = 0.02, largest_step = 0.1, smallest_step = 1e-6;  ///< of arclength
+  double first_step = 0.02, largest_step = 0.5, smallest_step = 1e-6;  ///< of arclength
   double low = -1;  ///< lambda at which a path that goes back ends
   int max_points = 2000;
   int max_events = 1000;
@@ -84,6 +84,18 @@ Path follow_path(StaticStudy& study, const PathProblem& problem, const PathOptio
 /// The other path through an event's point, towards `side` (+1, -1) times the critical motion.
 Path follow_branch(StaticStudy& study, const PathProblem& problem, const PathEvent& event, int side,
                    const PathOptions& options = {});
+
+/// Where the robot goes from an unstable point with its parameters locked.
+struct Release {
+  SolveReport solve;  ///< relaxation(): implicit gradient flow, not dynamics
+  PathPoint end;
+  double moved = 0;  ///< in the metric of the arclength
+};
+
+/// From `point`, displaced by `side` (+1, -1) times the critical motion of the event at which
+/// stability was lost, downhill to a stable equilibrium.
+Release release(StaticStudy& study, const PathProblem& problem, const PathPoint& point,
+                const PathEvent& event, int side);
 
 /// The motion against which the study's present equilibrium is nearest to yielding, by inverse
 /// iteration on the robot's own linear system: positions are held by weak springs whose rest is

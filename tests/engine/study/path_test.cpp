@@ -117,6 +117,7 @@ Scene column(double length) {
 // the ends approach to L (2 E / K - 1) (Euler 1744; Love, Mathematical Theory of Elasticity, §262).
 TEST(Path, BuckledColumnFollowsTheElastica) {
   constexpr double kLength = 0.4;
+  constexpr double kMeetK = 2.321049853;  // K(k) where 2 E = K
   const Scene scene = column(kLength);
   const double EI = bending_stiffness(scene.rods[0]);
   const double euler = kPi * kPi * EI / (kLength * kLength);
@@ -134,7 +135,10 @@ TEST(Path, BuckledColumnFollowsTheElastica) {
   for (const int side : {1, -1}) {
     const Path branch = follow_branch(study, problem, event, side);
     ASSERT_EQ(branch.end, PathEnd::kArrived) << to_string(branch.end);
-    EXPECT_TRUE(branch.events.empty());
+    // where the ends meet, 2 E = K, the whole rod can turn about them
+    ASSERT_EQ(branch.events.size(), 1U);
+    EXPECT_EQ(branch.events[0].kind, PathEventKind::kBranchPoint);
+    EXPECT_NEAR(branch.events[0].point.lambda * 3, std::pow(2 * kMeetK / kPi, 2), 1e-7);
     double widest = 0;
     for (const PathPoint& point : branch.points) {
       study.restore(point.state);
@@ -146,10 +150,51 @@ TEST(Path, BuckledColumnFollowsTheElastica) {
       EXPECT_NEAR(point.lambda * 3, std::pow(2 * K / kPi, 2), 2e-7 * point.lambda * 3);
       EXPECT_NEAR(std::abs(point_at(rod, 0.5).position.x()), kLength * s / K, 1e-7 * kLength);
       EXPECT_NEAR(rod.points.back().position.z(), kLength * (2 * E / K - 1), 1e-7 * kLength);
-      EXPECT_EQ(point.unstable, 0);
+      EXPECT_EQ(point.unstable, rod.points.back().position.z() > 0 ? 0 : 1);
       widest = std::max(widest, a);
     }
     EXPECT_GT(widest, 2);
+  }
+}
+
+TEST(Path, PublishedRobotLosesStabilityWhenTranslated) {
+  Scene scene = stewart_gough(std::vector<double>(6, 0.5), false);
+  for (int i = 0; i < 6; ++i) {
+    DriveSpec drive;
+    drive.quantity = DriveQuantity::kLength;
+    drive.rod = i;
+    ProfileTerm term;
+    term.value = 0.5;
+    drive.profile.terms.push_back(term);
+    scene.drives.push_back(drive);
+  }
+  scene.bodies[0].X_WB.p.z() = 0.5;
+  StaticStudy study(scene);
+  ASSERT_TRUE(study.solve().converged());
+  PoseGoal from, to;
+  from.at.body = to.at.body = 0;
+  from.position = {0, 0, 0.5};
+  to.position = {0.5, 0, 0.5};
+  ASSERT_TRUE(solve_inverse(study, study.drives(), reach(from, 0.5)).reached);
+  PathOptions options;
+  options.max_events = 1;
+  const auto t0 = std::chrono::steady_clock::now();
+  options.observe = [&](const PathPoint& p) {
+    const auto& X = p.state.unknowns.bodies[0];
+    fprintf(stderr, "x %.5f s %.4f unstable %d softest %.6g  lengths %.4f %.4f %.4f %.4f t %.1f\n", X.p.x(), p.s, p.unstable, p.softest, p.state.drives[0], p.state.drives[2], p.state.drives[3],p.state.drives[4], std::chrono::duration<double>(std::chrono::steady_clock::now()-t0).count());
+    return true;
+  };
+  const Path path = follow_path(study, along_pose(study, study.drives(), from, to), options);
+  fprintf(stderr, "%s\n", to_string(path.end));
+  for (auto& e : path.events) {
+    fprintf(stderr, "event %s x %.10g %d %d softest %g\n", to_string(e.kind), e.point.lambda*0.5, e.before, e.after, e.point.softest);
+    for (int side : {1, -1}) {
+      const Release r = release(study, along_pose(study, study.drives(), from, to), path.points.back(), e, side);
+      const Pose& X = r.end.state.unknowns.bodies[0];
+      fprintf(stderr, "release from %g: %s %d its, res %g, moved %g, unstable %d softest %g\n", path.points.back().lambda*0.5, to_string(r.solve.status), r.solve.iterations, r.solve.residual, r.moved, r.end.unstable, r.end.softest);
+      std::cerr << X.p.transpose() << " angles " << angles_of(X.R).transpose()*57.29578 << std::endl;
+    }
+    if (!e.bodies.empty()) std::cerr << e.bodies[0].transpose() << std::endl;
   }
 }
 
