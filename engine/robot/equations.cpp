@@ -124,6 +124,15 @@ void Equations::restart() {
   evaluate();
 }
 
+bool alike(const RobotUnknowns& a, const RobotUnknowns& b) {
+  const auto alike_rods = [](const RodModel::Unknowns& u, const RodModel::Unknowns& v) {
+    return u.values.size() == v.values.size() && u.starts.size() == v.starts.size() &&
+           u.nodes.size() == v.nodes.size();
+  };
+  return a.bodies.size() == b.bodies.size() && a.joint_q.size() == b.joint_q.size() &&
+         std::equal(a.rods.begin(), a.rods.end(), b.rods.begin(), b.rods.end(), alike_rods);
+}
+
 RobotUnknowns Equations::unknowns() const {
   RobotUnknowns u;
   for (const RobotRod& rod : robot_.rods)

@@ -29,6 +29,9 @@ struct RobotUnknowns {
   std::vector<Vec6> joint_lambda;
 };
 
+/// Whether one may be set where the other was found: as many of everything.
+bool alike(const RobotUnknowns& a, const RobotUnknowns& b);
+
 class Equations final : public Problem {
  public:
   Equations(Robot& robot, double tolerance);

@@ -40,11 +40,6 @@ SolveOptions step_options(const SolverSpec& spec) {
   return options;
 }
 
-bool embedded(SchemeKind kind) {
-  return kind == SchemeKind::kTrBdf2 || kind == SchemeKind::kEsdirk32 ||
-         kind == SchemeKind::kEsdirk43;
-}
-
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", x);
@@ -52,26 +47,6 @@ std::string number(double x) {
 }
 
 }  // namespace
-
-StepPlan plan_steps(const Scene& scene) {
-  StepPlan plan;
-  const SolverSpec& spec = scene.solver;
-  plan.scheme.kind = spec.scheme.value_or(SchemeKind::kEsdirk32);
-  plan.scheme.alpha = spec.alpha.value_or(-0.4);
-  plan.scheme.rho_inf = spec.rho_inf.value_or(0.8);
-  plan.adaptive = embedded(plan.scheme.kind) && !spec.step;
-  plan.step = spec.step.value_or(scene.max_step_size);
-  if (!plan.adaptive) return plan;
-  plan.tolerance = spec.tolerance.value_or(1e-5);
-  if (spec.accuracy && !spec.tolerance) {
-    double length = 0;
-    for (const RodSpec& rod : scene.rods)
-      length = std::max(length, rod.length);
-    // local errors add up: a tenth of what is asked for
-    plan.tolerance = 0.1 * *spec.accuracy / (length > 0 ? length : 1);
-  }
-  return plan;
-}
 
 struct Simulation::Parts {
   const Scene scene;  // bodies, rods and loads point into it
@@ -151,6 +126,23 @@ struct Simulation::Parts {
     return report.converged();
   }
 
+  /// Newton's method from the unknowns of a like robot. @return false: the unknowns are as before
+  bool follow(const RobotUnknowns& neighbour) {
+    const RobotUnknowns own = equations.unknowns();
+    if (!alike(own, neighbour)) return false;
+    equations.set_instant(t, true, StageRates{});
+    equations.set_unknowns(neighbour);
+    SolveOptions options = static_options(scene.solver);
+    options.polish = true;
+    report = newton(equations, options);
+    count(report);
+    if (!report.converged()) equations.set_unknowns(own);
+    return report.converged();
+  }
+
+  /// @return whether the neighbour's equilibrium could be followed
+  bool start(const RobotUnknowns* neighbour);
+
   /// Rods find their unloaded shape between bodies that stay where the scene puts them.
   bool assemble() {
     equations.hold_bodies(true);
@@ -215,24 +207,39 @@ const ProblemFacts& Simulation::facts() const {
   return parts_->facts;
 }
 
-const SolveReport& Simulation::start() {
-  Parts& p = *parts_;
+bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
   const auto begin = Clock::now();
   const bool equilibrium =
-      p.scene.simulation.mode != Mode::kDynamic || p.scene.simulation.initial_static;
-  if (!p.free_only() && !(equilibrium ? p.find_equilibrium() : p.assemble())) {
-    p.observe(0, seconds_since(begin));
-    return p.report;
+      scene.simulation.mode != Mode::kDynamic || scene.simulation.initial_static;
+  const bool near = neighbour && equilibrium && !free_only() && follow(*neighbour);
+  if (!near && !free_only() && !(equilibrium ? find_equilibrium() : assemble())) {
+    observe(0, seconds_since(begin));
+    return false;
   }
-  if (!p.free_only()) p.start_motion();
-  p.statistics.start_iterations = std::exchange(p.statistics.iterations, 0);
-  p.statistics.max_iterations = 0;
-  p.ledger.open();
-  p.statistics.start_seconds = seconds_since(begin);
-  p.observe(0, p.statistics.start_seconds);
-  p.before = p.now;
-  if (p.end <= 0) p.status = RunStatus::kDone;
-  return p.report;
+  if (!free_only()) start_motion();
+  statistics.start_iterations = std::exchange(statistics.iterations, 0);
+  statistics.max_iterations = 0;
+  ledger.open();
+  statistics.start_seconds = seconds_since(begin);
+  observe(0, statistics.start_seconds);
+  before = now;
+  if (end <= 0) status = RunStatus::kDone;
+  return near;
+}
+
+const SolveReport& Simulation::start() {
+  parts_->start(nullptr);
+  return parts_->report;
+}
+
+const SolveReport& Simulation::start_near(const RobotUnknowns& neighbour, bool* followed) {
+  const bool near = parts_->start(&neighbour);
+  if (followed != nullptr) *followed = near;
+  return parts_->report;
+}
+
+std::shared_ptr<const RobotUnknowns> Simulation::unknowns() const {
+  return std::make_shared<RobotUnknowns>(parts_->equations.unknowns());
 }
 
 // PI control (Söderlind, ACM TOMS 29, 2003) with the usual limits.

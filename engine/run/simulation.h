@@ -15,6 +15,8 @@
 
 namespace cprsim {
 
+struct RobotUnknowns;
+
 /// How a run ended.
 enum class RunStatus {
   kRunning,  ///< advance() may be called
@@ -66,6 +68,16 @@ class Simulation {
 
   /// Finds the initial state (static equilibrium if the scene asks for it or is static).
   const SolveReport& start();
+
+  /// The same for a scene that starts in equilibrium, from the equilibrium of a neighbour: the same
+  /// robot with slightly other numbers. Newton's method only, so that the answer is on the
+  /// neighbour's branch and smooth in those numbers, with one step more than the tolerance asks for
+  /// (the error left is of the order of its square). Where that fails, or the robot is another one,
+  /// as start(); `followed` says which.
+  const SolveReport& start_near(const RobotUnknowns& neighbour, bool* followed = nullptr);
+
+  /// All unknowns as they now are, for start_near() of another simulation.
+  std::shared_ptr<const RobotUnknowns> unknowns() const;
 
   /// One time step (or, in quasi-static mode, one equilibrium). Only while status() is kRunning.
   const SolveReport& advance();

@@ -102,6 +102,7 @@ void load(const std::string& text, const std::string& name, const LoadOptions& o
   Node* world = choose_world(*root, report);
   if (!world) return;
   apply_overrides(*world, options, report);
+  result.got = values_at(*world, options.get, report);
   result.expected_failure = expected_failure(*world);
   validate(*root, options.lax, report);
 

@@ -17,7 +17,8 @@ namespace cprsim {
 struct LoadOptions {
   std::vector<std::string> resource_paths;  ///< folders for model://, package:// and relative names
   std::vector<std::pair<std::string, std::string>> set;  ///< --set PATH=VALUE
-  std::vector<std::string> with, without;                ///< effects switched on and off
+  std::vector<std::string> get;  ///< paths whose values are asked for, see LoadResult::got
+  std::vector<std::string> with, without;  ///< effects switched on and off
   bool lax = false;  ///< SDF elements that cannot be carried out: warning instead of error
   std::optional<double> duration, step, accuracy;
   std::optional<std::string> method;
@@ -26,6 +27,7 @@ struct LoadOptions {
 struct LoadResult {
   std::unique_ptr<Scene> scene;  ///< null if there is any error
   std::vector<Diagnostic> diagnostics;
+  std::vector<std::string> got;  ///< texts at LoadOptions::get, after all changes
   std::string
       expected_failure;  ///< code of <fails with="E..."/>: the scene is meant to be rejected
 };

@@ -158,20 +158,62 @@ void explain(Diagnostic& diagnostic, const Lookup& lookup) {
     diagnostic.details.push_back("candidate: " + path);
 }
 
+// "a/pose#3" -> "a/pose" and 3; 0 where no number is picked
+std::pair<std::string, std::size_t> split_pick(const std::string& path) {
+  const std::size_t hash = path.rfind('#');
+  if (hash == std::string::npos) return {path, 0};
+  const auto pick = parse_integer(path.substr(hash + 1));
+  if (!pick || *pick < 1 || *pick > 1000) return {path, 0};
+  return {path.substr(0, hash), static_cast<std::size_t>(*pick)};
+}
+
+std::string text_of(const Target& target) {
+  return std::string(target.attribute.empty() ? std::string_view(target.node->text)
+                                              : target.node->value(target.attribute));
+}
+
+/// One target and the number picked from it, or the reason why not.
+struct Spot {
+  Lookup lookup;
+  std::vector<std::string> words;  ///< of a text from which one is picked
+  std::size_t pick = 0;
+};
+
+Spot spot_at(Node& world, const std::string& path) {
+  const auto [bare, pick] = split_pick(path);
+  Spot spot{single(world, bare), {}, pick};
+  if (!spot.lookup.problem.empty() || pick == 0) return spot;
+  const std::string text = text_of(spot.lookup.found[0]);
+  for (const std::string_view word : split_words(text))
+    spot.words.emplace_back(word);
+  if (pick > spot.words.size())
+    spot.lookup.problem =
+        "there are " + std::to_string(spot.words.size()) + " numbers at '" + bare + "'";
+  return spot;
+}
+
 void set_value(Node& world, const std::string& path, const std::string& value, Reporter& report) {
-  const Lookup lookup = single(world, path);
+  Spot spot = spot_at(world, path);
+  const Lookup& lookup = spot.lookup;
   if (!lookup.problem.empty()) {
     explain(report.at(Severity::kError, "E311", {}, 0,
                       "--set " + path + "=" + value + ": " + lookup.problem),
             lookup);
     return;
   }
+  std::string text(trim(value));
+  if (spot.pick > 0) {
+    spot.words[spot.pick - 1] = text;
+    text.clear();
+    for (const std::string& word : spot.words)
+      text += (text.empty() ? "" : " ") + word;
+  }
   Node& node = *lookup.found[0].node;
   if (lookup.found[0].attribute.empty()) {
-    node.text = trim(value);
+    node.text = text;
     node.text_place = {};
   } else {
-    node.set_attribute(lookup.found[0].attribute, value);
+    node.set_attribute(lookup.found[0].attribute, text);
     for (Attribute& a : node.attributes)
       if (a.name == lookup.found[0].attribute) a.place = a.value_place = {};
   }
@@ -218,6 +260,23 @@ void apply_overrides(Node& world, const LoadOptions& options, Reporter& report) 
   }
   for (const auto& [path, value] : options.set)
     set_value(world, path, value, report);
+}
+
+std::vector<std::string> values_at(Node& world, const std::vector<std::string>& paths,
+                                   Reporter& report) {
+  std::vector<std::string> texts;
+  for (const std::string& path : paths) {
+    const Spot spot = spot_at(world, path);
+    texts.emplace_back();
+    if (!spot.lookup.problem.empty()) {
+      explain(
+          report.at(Severity::kError, "E311", {}, 0, "path '" + path + "': " + spot.lookup.problem),
+          spot.lookup);
+    } else {
+      texts.back() = spot.pick > 0 ? spot.words[spot.pick - 1] : text_of(spot.lookup.found[0]);
+    }
+  }
+  return texts;
 }
 
 void check_path(const Node& world, const Attribute& path, const Node& where, Reporter& report) {

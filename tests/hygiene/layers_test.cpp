@@ -47,6 +47,9 @@ const std::vector<Layer>& layers() {
        {}},
       {"engine/run/", {"engine/"}, {}},
       {"engine/study/", {"engine/"}, {}},
+      // unknown numbers and their confidence: no physics. MINPACK's search is Eigen's unsupported
+      // one
+      {"engine/fit/", {"engine/math/"}, {"unsupported/Eigen/"}},
       {"scenes/", model, join({"tinyxml2.h", "assimp/"}, kPosix)},
       {"collision/",
        join(model, {"engine/robot/free_bodies.h", "engine/run/snapshot.h"}),

@@ -25,6 +25,25 @@ TEST(Overrides, ReachElementsEntitiesAndAttributes) {
   EXPECT_EQ(with("robot::leg/tip/@joint", "ball").scene->rods[0].tip.joint, EndJoint::kBall);
 }
 
+TEST(Overrides, ReachOneNumberOfSeveral) {
+  const LoadResult result = with("robot::plate/pose#3", "0.45");
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_EQ(load_text(scene_text()).scene->bodies[1].X_WB.p.z(), 0.4);
+  EXPECT_EQ(result.scene->bodies[1].X_WB.p.z(), 0.45);
+  for (const char* path : {"robot::plate/pose#7", "robot::plate/pose#0", "robot::plate/pose#x"})
+    EXPECT_EQ(error_codes(with(path, "1")), std::vector<std::string>{"E311"}) << path;
+}
+
+TEST(Overrides, TellTheValuesThatAreAskedFor) {
+  LoadOptions options;
+  options.set = {{"robot::leg/length", "0.5"}};
+  options.get = {"robot::leg/length", "robot::plate/pose#3", "robot::leg/tip/@joint"};
+  EXPECT_EQ(load_text(scene_text(), options).got,
+            (std::vector<std::string>{"0.5", "0.4", "fixed"}));
+  options.get = {"robot::leg/lenght"};
+  EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E311"});
+}
+
 TEST(Overrides, ThatFitNothingOrSeveralPlacesListCandidates) {
   const LoadResult nothing = with("robot::leg/lenght", "0.5");
   EXPECT_EQ(error_codes(nothing), std::vector<std::string>{"E311"});

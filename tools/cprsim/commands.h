@@ -6,10 +6,13 @@
 
 namespace cprsim {
 
-int run_command(const Words& words);      ///< simulate; record, film and check as the scene asks
-int check_command(const Words& words);    ///< read and validate only
-int info_command(const Words& words);     ///< what is in a scene, and what follows from it
-int explain_command(const Words& words);  ///< the meaning of a code
-int doctor_command(const Words& words);   ///< what this machine can do
+int run_command(const Words& words);       ///< simulate; record, film and check as the scene asks
+int check_command(const Words& words);     ///< read and validate only
+int info_command(const Words& words);      ///< what is in a scene, and what follows from it
+int solve_command(const Words& words);     ///< equilibria: pose from drives, drives from pose
+int modes_command(const Words& words);     ///< natural frequencies
+int identify_command(const Words& words);  ///< values of a scene from measurements
+int explain_command(const Words& words);   ///< the meaning of a code
+int doctor_command(const Words& words);    ///< what this machine can do
 
 }  // namespace cprsim

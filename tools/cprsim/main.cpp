@@ -28,12 +28,16 @@ Examples
   cprsim scene.xml --without damping --still shot.png@0.5
   cprsim check scenes/robots/*.xml          only validate
   cprsim info scene.xml                     stiffness, frequencies, effects and their advisor
+  cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0
+  cprsim identify scene.xml tips.csv --fit rod/material/youngs_modulus
 
 Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
 
 Commands
   run check info           simulate, verify, look into a scene
+  solve modes              equilibria, inverse problems, stability, natural frequencies
+  identify                 fit values of a scene to measurements
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -54,9 +58,11 @@ struct Command {
   int (*start)(const Words&);
 };
 
-constexpr std::array kCommands{Command{"run", run_command}, Command{"check", check_command},
-                               Command{"info", info_command}, Command{"explain", explain_command},
-                               Command{"doctor", doctor_command}};
+constexpr std::array kCommands{
+    Command{"run", run_command},         Command{"check", check_command},
+    Command{"info", info_command},       Command{"solve", solve_command},
+    Command{"modes", modes_command},     Command{"identify", identify_command},
+    Command{"explain", explain_command}, Command{"doctor", doctor_command}};
 
 bool names_a_scene(const std::string& word) {
   const auto ends_in = [&](std::string_view end) { return word.ends_with(end); };

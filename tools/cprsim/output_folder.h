@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder of a run's results. A folder that cprsim wrote before (it has a run.json) is used
-// again after the files listed there are removed; one with anything else in it is refused.
+// The folder of a command's results. A folder that the command wrote before (it has a run.json, or
+// what else its report is called) is used again after the files listed there are removed; one with
+// anything else in it is refused.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +15,7 @@ namespace cprsim {
 class OutputFolder {
  public:
   /// Creates or empties the folder and locks it against a second run. @throws OutputError
-  explicit OutputFolder(std::filesystem::path path);
+  explicit OutputFolder(std::filesystem::path path, std::string report = "run.json");
 
   const std::filesystem::path& path() const { return path_; }
 
@@ -35,6 +36,7 @@ class OutputFolder {
   void remove_earlier_run() const;
 
   std::filesystem::path path_;
+  std::string report_;
   Lock lock_;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scenes/loader/load.h"
 #include "tools/sinks/csv.h"
 
 namespace cprsim {
@@ -76,8 +75,7 @@ bool LoadedScene::rejected_as_expected() const {
          });
 }
 
-LoadedScene load_and_show(const std::string& path, const SceneOptions& options,
-                          const Console& console) {
+LoadOptions load_options(const SceneOptions& options) {
   LoadOptions load;
   load.resource_paths = options.resource_paths;
   for (std::string& folder : environment_resource_paths()) {
@@ -91,13 +89,20 @@ LoadedScene load_and_show(const std::string& path, const SceneOptions& options,
   load.step = options.step;
   load.accuracy = options.accuracy;
   load.method = options.method;
-  LoadResult result = load_scene(path, load);
+  return load;
+}
 
-  if (options.strict) {
-    for (Diagnostic& d : result.diagnostics) {
-      if (d.severity == Severity::kWarning) d.severity = Severity::kError;
-    }
+void make_strict(std::vector<Diagnostic>& diagnostics, const SceneOptions& options) {
+  if (!options.strict) return;
+  for (Diagnostic& d : diagnostics) {
+    if (d.severity == Severity::kWarning) d.severity = Severity::kError;
   }
+}
+
+LoadedScene load_and_show(const std::string& path, const SceneOptions& options,
+                          const Console& console) {
+  LoadResult result = load_scene(path, load_options(options));
+  make_strict(result.diagnostics, options);
   if (has_errors(result.diagnostics)) result.scene.reset();
   if (result.scene && options.seed) result.scene->simulation.seed = *options.seed;
   console.show(result.diagnostics);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/model/scene.h"
+#include "scenes/loader/load.h"
 #include "tools/cprsim/command_line.h"
 #include "tools/cprsim/console.h"
 
@@ -36,6 +37,12 @@ struct LoadedScene {
 };
 
 void add_scene_options(CLI::App& app, SceneOptions& options);
+
+/// What the options ask of the loader, with the folders that the environment names.
+LoadOptions load_options(const SceneOptions& options);
+
+/// --strict: warnings become errors.
+void make_strict(std::vector<Diagnostic>& diagnostics, const SceneOptions& options);
 
 /// Reads the file (standard input for "-"), applies the options and shows what there is to say.
 LoadedScene load_and_show(const std::string& path, const SceneOptions& options,
