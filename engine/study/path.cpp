@@ -171,6 +171,7 @@ Release release(StaticStudy& study, const PathProblem& problem, const PathPoint&
   SolveOptions options;
   options.tolerance = study.tolerance();
   options.max_iterations = 40;
+  options.assembled = true;
   Release out;
   out.solve = relaxation(study.equations(), options);
   PathStation end;

@@ -57,7 +57,7 @@ enum class PathEnd {
 const char* to_string(PathEnd end);
 
 struct PathOptions {
-  double first_step = 0.02, largest_step = 0.5, smallest_step = 1e-6;  ///< of arclength
+  double first_step = 0.02, largest_step = 0.1, smallest_step = 1e-6;  ///< of arclength
   double low = -1;  ///< lambda at which a path that goes back ends
   int max_points = 2000;
   int max_events = 1000;

@@ -181,18 +181,26 @@ TEST(Path, PublishedRobotLosesStabilityWhenTranslated) {
   const auto t0 = std::chrono::steady_clock::now();
   options.observe = [&](const PathPoint& p) {
     const auto& X = p.state.unknowns.bodies[0];
-    fprintf(stderr, "x %.5f s %.4f unstable %d softest %.6g  lengths %.4f %.4f %.4f %.4f t %.1f\n", X.p.x(), p.s, p.unstable, p.softest, p.state.drives[0], p.state.drives[2], p.state.drives[3],p.state.drives[4], std::chrono::duration<double>(std::chrono::steady_clock::now()-t0).count());
+    fprintf(stderr, "x %.5f s %.4f unstable %d softest %.6g  lengths %.4f %.4f %.4f %.4f t %.1f\n",
+            X.p.x(), p.s, p.unstable, p.softest, p.state.drives[0], p.state.drives[2],
+            p.state.drives[3], p.state.drives[4],
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
     return true;
   };
   const Path path = follow_path(study, along_pose(study, study.drives(), from, to), options);
   fprintf(stderr, "%s\n", to_string(path.end));
   for (auto& e : path.events) {
-    fprintf(stderr, "event %s x %.10g %d %d softest %g\n", to_string(e.kind), e.point.lambda*0.5, e.before, e.after, e.point.softest);
+    fprintf(stderr, "event %s x %.10g %d %d softest %g\n", to_string(e.kind), e.point.lambda * 0.5,
+            e.before, e.after, e.point.softest);
     for (int side : {1, -1}) {
-      const Release r = release(study, along_pose(study, study.drives(), from, to), path.points.back(), e, side);
+      const Release r =
+          release(study, along_pose(study, study.drives(), from, to), path.points.back(), e, side);
       const Pose& X = r.end.state.unknowns.bodies[0];
-      fprintf(stderr, "release from %g: %s %d its, res %g, moved %g, unstable %d softest %g\n", path.points.back().lambda*0.5, to_string(r.solve.status), r.solve.iterations, r.solve.residual, r.moved, r.end.unstable, r.end.softest);
-      std::cerr << X.p.transpose() << " angles " << angles_of(X.R).transpose()*57.29578 << std::endl;
+      fprintf(stderr, "release from %g: %s %d its, res %g, moved %g, unstable %d softest %g\n",
+              path.points.back().lambda * 0.5, to_string(r.solve.status), r.solve.iterations,
+              r.solve.residual, r.moved, r.end.unstable, r.end.softest);
+      std::cerr << X.p.transpose() << " angles " << angles_of(X.R).transpose() * 57.29578
+                << std::endl;
     }
     if (!e.bodies.empty()) std::cerr << e.bodies[0].transpose() << std::endl;
   }
