@@ -124,7 +124,12 @@ class Search {
   void describe(PathEvent& event) {
     event.point = judged_point(system_.study(), event.station, nullptr);
     system_.study().restore(event.station.state);
-    if (!critical_motion(system_, kCriticalMotion, event.direction, event.displaced)) return;
+    if (!critical_motion(system_, kCriticalMotion, event.direction, event.displaced)) {
+      // no direction: branches and releases that ask for it find nothing, and say so
+      event.direction.u.setZero();
+      event.displaced = event.station.state;
+      return;
+    }
     for (Eigen::Index b = 0; b < static_cast<Eigen::Index>(system_.study().robot().bodies.size());
          ++b) {
       Vec6 motion = event.direction.u.segment<6>(6 * b);

@@ -37,8 +37,11 @@ class Drawing {
   void add(const Path& path) {
     const std::vector<PathRow> rows = rows_of(path);
     for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
-      std::string& curve = rows[i].unstable_after() > 0 ? curves.unstable : curves.stable;
-      curve += at(*rows[i].point) + at(*rows[i + 1].point) + "\n";
+      const bool unstable = rows[i].unstable_after() > 0;
+      const bool goes_on = i > 0 && (rows[i - 1].unstable_after() > 0) == unstable;
+      std::string& curve = unstable ? curves.unstable : curves.stable;
+      if (!goes_on) curve += "\n" + at(*rows[i].point);
+      curve += at(*rows[i + 1].point);
     }
     for (const PathEvent& event : path.events)
       curves.events[static_cast<std::size_t>(event.kind)] += at(event.point);

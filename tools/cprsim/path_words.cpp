@@ -18,8 +18,8 @@ points, and says where stability is lost.
 Examples
   cprsim path robot.xml --drive robot::leg_1.length --to 0.45
   cprsim path robot.xml --drive robot::left=40deg --drive robot::right=140deg
-  cprsim path scenes/paths/euler_column.xml --load column::slider.force.z --to -60 --branch
-  cprsim path scenes/paths/lees_frame.xml --load frame::leg_2.force.z --to -20
+  cprsim path scenes/paths/euler_column.xml --load column::slider.force.z --to -12 --branch
+  cprsim path scenes/paths/lees_frame.xml --load frame::beam.force.z --to -20000
   cprsim path scenes/paths/csg_translated.xml --pose robot::platform --from 0,0,0.5,0,0,0 \
       --to 0.2,0,0.5,0,0,0 --release --events 1
 

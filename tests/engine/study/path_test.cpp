@@ -124,7 +124,9 @@ TEST(Path, BuckledColumnFollowsTheElastica) {
   StaticStudy study(scene);
   ASSERT_TRUE(study.solve().converged());
   const PathProblem problem = along_line(study, {force_of(0, 2)}, one(0), one(-3 * euler));
-  const Path straight = follow_path(study, problem);
+  PathOptions options;
+  options.largest_step = 0.5;
+  const Path straight = follow_path(study, problem, options);
   ASSERT_EQ(straight.end, PathEnd::kArrived);
   ASSERT_EQ(straight.events.size(), 1U);
   const PathEvent& event = straight.events[0];
@@ -133,7 +135,7 @@ TEST(Path, BuckledColumnFollowsTheElastica) {
   EXPECT_EQ(straight.points.front().unstable, 0);
   EXPECT_EQ(straight.points.back().unstable, 1);
   for (const int side : {1, -1}) {
-    const Path branch = follow_branch(study, problem, event, side);
+    const Path branch = follow_branch(study, problem, event, side, options);
     ASSERT_EQ(branch.end, PathEnd::kArrived) << to_string(branch.end);
     // where the ends meet, 2 E = K, the whole rod can turn about them
     ASSERT_EQ(branch.events.size(), 1U);
@@ -157,53 +159,131 @@ TEST(Path, BuckledColumnFollowsTheElastica) {
   }
 }
 
-TEST(Path, PublishedRobotLosesStabilityWhenTranslated) {
+TEST(Path, CriticalMotionOfTheColumnIsASineHalfWave) {
+  constexpr double kLength = 0.4;
+  const Scene scene = column(kLength);
+  const double euler = kPi * kPi * bending_stiffness(scene.rods[0]) / (kLength * kLength);
+  StaticStudy study(scene);
+  ASSERT_TRUE(study.solve().converged());
+  const Path path =
+      follow_path(study, along_line(study, {force_of(0, 2)}, one(0), one(-2 * euler)));
+  ASSERT_EQ(path.events.size(), 1U);
+  study.restore(path.events[0].displaced);
+  const RodSample rod = study.snapshot().rods[0];
+  const double middle = point_at(rod, 0.5).position.x();
+  EXPECT_GT(std::abs(middle), 1e-3 * kLength);
+  for (const RodPoint& point : rod.points) {
+    EXPECT_NEAR(point.position.x(), middle * std::sin(kPi * point.s), 1e-2 * std::abs(middle));
+    EXPECT_NEAR(point.position.y(), 0, 1e-9);
+  }
+}
+
+/// Two legs of 120 at a right angle between hinges, pressed on the horizontal one 24 from the
+/// corner.
+Scene lees_frame() {
+  Scene scene;
+  switch_on(scene, {Effect::kExtension, Effect::kShear});
+  BodySpec corner;
+  corner.name = "corner";
+  corner.X_WB.p = {0, 0, 120};
+  scene.bodies.push_back(corner);
+  RodSpec leg = steel_rod(120, 1);
+  leg.section.shape = SectionShape::kRectangle;
+  leg.section.size = {2, 3};
+  leg.material->youngs_modulus = 7.2e6;
+  leg.material->shear_modulus = 7.2e6 / 2.6;
+  const Mat3 along_x = Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()).toRotationMatrix();
+  leg.base.joint = EndJoint::kRevolute;
+  leg.base.axis = Vec3::UnitY();
+  leg.tip.joint = EndJoint::kFixed;
+  leg.tip.at.body = 0;
+  scene.rods.push_back(leg);
+  std::swap(leg.base, leg.tip);
+  leg.base.at.X_BF.R = along_x;
+  leg.tip.at.X_BF = {along_x, {120, 0, 120}};
+  leg.name = "beam";
+  scene.rods.push_back(leg);
+  LoadSpec load;
+  load.rod = 1;
+  load.rod_s = 0.2;
+  scene.loads.push_back(load);
+  scene.solver.points = 8;
+  return scene;
+}
+
+// Reference: arc length on a shooting map, independent of this program, shear coefficient 1;
+// literature 18.55 and -9.4 EI/L² (Lee, Manuel, Rossow 1968).
+TEST(Path, LeesFrameSnapsBack) {
+  StaticStudy study(lees_frame());
+  ASSERT_TRUE(study.solve().converged());
+  PathOptions options;
+  options.largest_step = 0.4;
+  const Path path =
+      follow_path(study, along_line(study, {force_of(0, 2)}, one(0), one(-20000)), options);
+  ASSERT_EQ(path.end, PathEnd::kArrived) << to_string(path.end);
+  std::vector<double> folds;
+  for (const PathEvent& event : path.events)
+    if (event.kind == PathEventKind::kFold) folds.push_back(20000 * event.point.lambda);
+  ASSERT_EQ(folds.size(), 2U);
+  EXPECT_NEAR(folds[0] / 18546.5587408, 1, 1e-6);
+  EXPECT_NEAR(folds[1] / -9396.14236998, 1, 1e-5);
+}
+
+/// The published robot over its base, 0.5 m above it.
+Scene translated_robot() {
   Scene scene = stewart_gough(std::vector<double>(6, 0.5), false);
   for (int i = 0; i < 6; ++i) {
     DriveSpec drive;
     drive.quantity = DriveQuantity::kLength;
     drive.rod = i;
-    ProfileTerm term;
-    term.value = 0.5;
-    drive.profile.terms.push_back(term);
+    drive.profile.terms.push_back({});
+    drive.profile.terms.back().value = 0.5;
     scene.drives.push_back(drive);
   }
   scene.bodies[0].X_WB.p.z() = 0.5;
-  StaticStudy study(scene);
+  scene.solver.points = 5;
+  return scene;
+}
+
+TEST(Path, PublishedRobotLosesStabilityWhenTranslatedAndSnapsToEitherSide) {
+  StaticStudy study(translated_robot());
   ASSERT_TRUE(study.solve().converged());
   PoseGoal from, to;
   from.at.body = to.at.body = 0;
   from.position = {0, 0, 0.5};
-  to.position = {0.5, 0, 0.5};
+  to.position = {0.117, 0, 0.5};
   ASSERT_TRUE(solve_inverse(study, study.drives(), reach(from, 0.5)).reached);
-  PathOptions options;
-  options.max_events = 1;
-  const auto t0 = std::chrono::steady_clock::now();
-  options.observe = [&](const PathPoint& p) {
-    const auto& X = p.state.unknowns.bodies[0];
-    fprintf(stderr, "x %.5f s %.4f unstable %d softest %.6g  lengths %.4f %.4f %.4f %.4f t %.1f\n",
-            X.p.x(), p.s, p.unstable, p.softest, p.state.drives[0], p.state.drives[2],
-            p.state.drives[3], p.state.drives[4],
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
-    return true;
-  };
-  const Path path = follow_path(study, along_pose(study, study.drives(), from, to), options);
-  fprintf(stderr, "%s\n", to_string(path.end));
-  for (auto& e : path.events) {
-    fprintf(stderr, "event %s x %.10g %d %d softest %g\n", to_string(e.kind), e.point.lambda * 0.5,
-            e.before, e.after, e.point.softest);
-    for (int side : {1, -1}) {
-      const Release r =
-          release(study, along_pose(study, study.drives(), from, to), path.points.back(), e, side);
-      const Pose& X = r.end.state.unknowns.bodies[0];
-      fprintf(stderr, "release from %g: %s %d its, res %g, moved %g, unstable %d softest %g\n",
-              path.points.back().lambda * 0.5, to_string(r.solve.status), r.solve.iterations,
-              r.solve.residual, r.moved, r.end.unstable, r.end.softest);
-      std::cerr << X.p.transpose() << " angles " << angles_of(X.R).transpose() * 57.29578
-                << std::endl;
-    }
-    if (!e.bodies.empty()) std::cerr << e.bodies[0].transpose() << std::endl;
+  const PathProblem problem = along_pose(study, study.drives(), from, to);
+  const Path path = follow_path(study, problem);
+  ASSERT_EQ(path.end, PathEnd::kArrived);
+  for (const PathPoint& point : path.points) {
+    const Pose& X = point.state.unknowns.bodies[0];
+    EXPECT_NEAR(X.p.x(), 0.117 * point.lambda, 1e-10);
+    EXPECT_NEAR(X.p.y(), 0, 1e-10);
+    EXPECT_NEAR(X.p.z(), 0.5, 1e-10);
   }
+  ASSERT_EQ(path.events.size(), 1U);
+  const PathEvent& event = path.events[0];
+  EXPECT_EQ(event.kind, PathEventKind::kStability);
+  EXPECT_EQ(event.before, 0);
+  EXPECT_EQ(event.after, 1);
+  EXPECT_NEAR(event.point.lambda * 0.117, 0.11678, 1e-5);
+  // softest stiffness zero there; and the critical motion is out of the mirror plane y = 0
+  EXPECT_LT(std::abs(event.point.softest), 1e-6 * path.points.front().softest);
+  ASSERT_EQ(event.bodies.size(), 1U);
+  EXPECT_LT(std::abs(event.bodies[0][3]), 1e-4 * std::abs(event.bodies[0][4]));
+  // let go beyond it with the legs locked, the robot leaves the mirror plane, to either side alike
+  Pose end[2];
+  for (int k = 0; k < 2; ++k) {
+    const Release let_go = release(study, problem, path.points.back(), event, k == 0 ? 1 : -1);
+    ASSERT_TRUE(let_go.solve.converged());
+    EXPECT_EQ(let_go.end.verdict, StabilityVerdict::kStable);
+    EXPECT_EQ(let_go.end.state.drives, path.points.back().state.drives);
+    end[k] = let_go.end.state.unknowns.bodies[0];
+    EXPECT_GT(std::abs(end[k].p.y()), 5e-5);
+  }
+  EXPECT_NEAR(end[0].p.y(), -end[1].p.y(), 1e-8);
+  EXPECT_NEAR(end[0].p.x(), end[1].p.x(), 1e-8);
 }
 
 }  // namespace
