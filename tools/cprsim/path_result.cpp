@@ -158,14 +158,15 @@ std::string path_json(StaticStudy& study, const PathResult& result, const PathSc
 
 std::string path_text(StaticStudy& study, const PathResult& result, const PathScale& scale,
                       const std::string& label, const std::string& folder) {
-  std::string text = fmt::format("{}: {} from {:.6g} to {:.6g} {}\n", label, scale.name, scale.from,
-                                 scale.to, scale.unit);
+  const std::string unit = scale.unit == "1" ? "" : " " + scale.unit;
+  std::string text = fmt::format("{}: {} from {:.6g} to {:.6g}{}\n", label, scale.name, scale.from,
+                                 scale.to, unit);
   for (const NamedPath& named : result.paths) {
     const Path& path = named.path;
     text +=
         fmt::format("  {:<12} {} points, {}", named.name, path.points.size(), to_string(path.end));
     if (!path.points.empty())
-      text += fmt::format(" at {:.8g} {}", scale.value(path.points.back().lambda), scale.unit);
+      text += fmt::format(" at {:.8g}{}", scale.value(path.points.back().lambda), unit);
     text += path.events.empty() ? ", no events\n" : "\n";
     if (path.events.empty()) continue;
     text += fmt::format("    {:<13} {:>20}  {:>10}  {}\n", "event", "[" + scale.unit + "]",
@@ -177,8 +178,8 @@ std::string path_text(StaticStudy& study, const PathResult& result, const PathSc
   }
   for (const NamedRelease& named : result.releases) {
     const Release& r = named.release;
-    text += fmt::format("  let go at {:.8g} {} after {}, side {:+d}: {}, {}, moved by {:.4g}\n",
-                        scale.value(named.lambda), scale.unit, named.event, named.side,
+    text += fmt::format("  let go at {:.8g}{} after {}, side {:+d}: {}, {}, moved by {:.4g}\n",
+                        scale.value(named.lambda), unit, named.event, named.side,
                         to_string(r.solve.status), to_string(r.end.verdict), r.moved);
     text += pose_text(study, r.end.state);
   }
