@@ -277,7 +277,7 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
   // falls and up as it grows, which is what leads away from an unstable equilibrium
   constexpr int kSteps = 400;
   constexpr double kNoDrag = 1e-3;
-  double drag = 10, fraction = 0, last_residual = 0;
+  double drag = 10, fraction = options.assembled ? 1 : 0, last_residual = 0;
   for (int k = 0; k < kSteps; ++k) {
     const double target = std::min(1.0, fraction + 0.1);
     problem.set_fraction(target);

@@ -15,6 +15,8 @@ struct SolveOptions {
   /// One full step even from a guess that meets the tolerance already, kept if it still does: in
   /// time steps the error of accepted guesses would add up.
   bool polish = false;
+  /// relaxation() begins assembled and under full load, from a displaced equilibrium.
+  bool assembled = false;
 };
 
 /// Newton's method. A full step that lowers the merit is taken. One that raises it is given a

@@ -56,6 +56,10 @@ const char* to_string(StabilityVerdict verdict) {
   }
 }
 
+double no_stiffness(const StaticStudy& study) {
+  return nothing_of(study.robot());
+}
+
 Stability judge(const StaticStudy& study) {
   const Robot& robot = study.robot();
   const RobotVariation v = robot_variation(robot, Inertia::kMetric);
@@ -73,6 +77,7 @@ Stability judge(const StaticStudy& study) {
   out.unstable = all.negative;
   out.verdict = verdict_of(all.negative, all.none);
   out.softest = modes.values[0];
+  out.stiffnesses = modes.values;
   const VecX shape = modes.vectors.col(0);
   const VecX y = v.free() * shape.tail(shape.size() - v.inner());
   for (std::size_t b = 0; b < robot.bodies.size(); ++b)

@@ -26,6 +26,7 @@ struct Stability {
   /// displacement of all rods' material.
   double softest = 0;
   std::vector<Vec6> softest_bodies;  ///< (rotation, translation) per body of the Newton system
+  VecX stiffnesses;                  ///< of all motions so measured, ascending; by judge() alone
   /// Stiffness of bodies, each about its centre of mass (rotation, translation), and of joint
   /// coordinates, with rods in equilibrium; world axes; N/m, N, N m.
   MatX body_stiffness;
@@ -33,6 +34,9 @@ struct Stability {
   /// symmetric part: the verdict then is about divergence, not flutter.
   bool potential = true;
 };
+
+/// Stiffnesses below this count as none, N/m.
+double no_stiffness(const StaticStudy& study);
 
 /// Stiffness of bodies and joint coordinates with every rod in equilibrium, before rigid joints.
 MatX condensed_stiffness(const RobotVariation& variation);

@@ -213,6 +213,11 @@ void StaticStudy::restore(const State& s) {
   equations_->evaluate();
 }
 
+void StaticStudy::adopt() {
+  solved_ = state();
+  has_solved_ = true;
+}
+
 Snapshot StaticStudy::snapshot() const {
   return take_snapshot(*robot_, nullptr, 0);
 }

@@ -73,6 +73,9 @@ class StaticStudy {
   State state() const;
   void restore(const State& state);
 
+  /// The present shape and values, found in equilibrium by other means, are where follow() starts.
+  void adopt();
+
   Snapshot snapshot() const;
 
   Equations& equations() { return *equations_; }

@@ -12,6 +12,7 @@ int info_command(const Words& words);      ///< what is in a scene, and what fol
 int solve_command(const Words& words);     ///< equilibria: pose from drives, drives from pose
 int modes_command(const Words& words);     ///< natural frequencies
 int identify_command(const Words& words);  ///< values of a scene from measurements
+int path_command(const Words& words);      ///< equilibria through folds and branch points
 int explain_command(const Words& words);   ///< the meaning of a code
 int doctor_command(const Words& words);    ///< what this machine can do
 

@@ -37,6 +37,7 @@ Usage  cprsim [run] SCENE [options]
 Commands
   run check info           simulate, verify, look into a scene
   solve modes              equilibria, inverse problems, stability, natural frequencies
+  path                     equilibria through folds and branch points
   identify                 fit values of a scene to measurements
   explain doctor           what a code means, what this machine can do
 
@@ -59,10 +60,11 @@ struct Command {
 };
 
 constexpr std::array kCommands{
-    Command{"run", run_command},         Command{"check", check_command},
-    Command{"info", info_command},       Command{"solve", solve_command},
-    Command{"modes", modes_command},     Command{"identify", identify_command},
-    Command{"explain", explain_command}, Command{"doctor", doctor_command}};
+    Command{"run", run_command},           Command{"check", check_command},
+    Command{"info", info_command},         Command{"solve", solve_command},
+    Command{"modes", modes_command},       Command{"path", path_command},
+    Command{"identify", identify_command}, Command{"explain", explain_command},
+    Command{"doctor", doctor_command}};
 
 bool names_a_scene(const std::string& word) {
   const auto ends_in = [&](std::string_view end) { return word.ends_with(end); };
