@@ -211,6 +211,12 @@ void StaticStudy::restore(const State& s) {
   equations_->evaluate();
 }
 
+void StaticStudy::adopt(const State& equilibrium) {
+  restore(equilibrium);
+  solved_ = equilibrium;
+  has_solved_ = true;
+}
+
 Snapshot StaticStudy::snapshot() const {
   return take_snapshot(*robot_, nullptr, 0);
 }

@@ -12,4 +12,7 @@ int info_command(const Words& words);     ///< what is in a scene, and what foll
 int explain_command(const Words& words);  ///< the meaning of a code
 int doctor_command(const Words& words);   ///< what this machine can do
 
+/// What a robot reaches, of that what is stable and within limits.
+int workspace_command(const Words& words);
+
 }  // namespace cprsim

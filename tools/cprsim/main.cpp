@@ -28,12 +28,14 @@ Examples
   cprsim scene.xml --without damping --still shot.png@0.5
   cprsim check scenes/robots/*.xml          only validate
   cprsim info scene.xml                     stiffness, frequencies, effects and their advisor
+  cprsim workspace scene.xml --random 1000  what drives reach: stable, within limits
 
 Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
 
 Commands
   run check info           simulate, verify, look into a scene
+  workspace                what a robot reaches: a sweep of drives or poses
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -54,9 +56,10 @@ struct Command {
   int (*start)(const Words&);
 };
 
-constexpr std::array kCommands{Command{"run", run_command}, Command{"check", check_command},
-                               Command{"info", info_command}, Command{"explain", explain_command},
-                               Command{"doctor", doctor_command}};
+constexpr std::array kCommands{
+    Command{"run", run_command},         Command{"check", check_command},
+    Command{"info", info_command},       Command{"workspace", workspace_command},
+    Command{"explain", explain_command}, Command{"doctor", doctor_command}};
 
 bool names_a_scene(const std::string& word) {
   const auto ends_in = [&](std::string_view end) { return word.ends_with(end); };

@@ -11,10 +11,17 @@
 
 namespace cprsim {
 
+/// By which a folder is known as ours: lists what was written beside it.
+struct ReportFile {
+  std::string name = "run.json";
+  std::string schema = "cprsim-run/";  ///< what "schema" in it begins with
+};
+
 class OutputFolder {
  public:
-  /// Creates or empties the folder and locks it against a second run. @throws OutputError
-  explicit OutputFolder(std::filesystem::path path);
+  /// Creates or empties the folder (`keep`: leaves what is ours in it) and locks it against a
+  /// second run. @throws OutputError
+  explicit OutputFolder(std::filesystem::path path, ReportFile report = {}, bool keep = false);
 
   const std::filesystem::path& path() const { return path_; }
 
@@ -35,6 +42,7 @@ class OutputFolder {
   void remove_earlier_run() const;
 
   std::filesystem::path path_;
+  ReportFile report_;
   Lock lock_;
 };
 
