@@ -3,7 +3,9 @@
 // equilibria each rung of the ladder finds, which solves fail, and whether what converged is in
 // balance. Writes FOLDER/robustness.md. Ends with 1 if a solution that was called converged is not
 // one.
-//   cprsim_robustness [--quick] [--vectors N] [--seed S] [--jobs J] [--only NAME] FOLDER
+//   cprsim_robustness [--quick] [--vectors N] [--others M] [--seed S] [--jobs J] [--only NAME]
+//                     FOLDER
+// M vectors for robots that are neither planar nor the published one; N if not given.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -33,6 +35,7 @@ constexpr int kShown = 3;                          // failing vectors that are w
 struct Options {
   std::string folder, only;
   std::size_t vectors = 10000;
+  std::size_t others = 0;  ///< 0: as many
   unsigned seed = 1;
   int jobs = 1;
 };
@@ -135,7 +138,10 @@ Outcome try_robot(const std::filesystem::path& path, const Options& options) {
   out.drives = axes.size();
   for (const auto& [how, number] : box)
     out.box += (out.box.empty() ? "" : ", ") + std::to_string(number) + " × " + how;
-  const auto points = random_points(axes, options.vectors, options.seed);
+  const bool other = out.name.rfind("planar_", 0) != 0 && out.name != "slider_crank" &&
+                     out.name != "csg_published";
+  const std::size_t count = other && options.others > 0 ? options.others : options.vectors;
+  const auto points = random_points(axes, count, options.seed);
   out.vectors = points.size();
   std::atomic<std::size_t> next{0};
   std::mutex one_at_a_time;
@@ -234,6 +240,8 @@ Options parse(int count, char** words) {
       options.vectors = 20;
     else if (word == "--vectors")
       options.vectors = std::stoul(value());
+    else if (word == "--others")
+      options.others = std::stoul(value());
     else if (word == "--seed")
       options.seed = static_cast<unsigned>(std::stoul(value()));
     else if (word == "--jobs")
@@ -245,7 +253,9 @@ Options parse(int count, char** words) {
   }
   if (options.folder.empty())
     throw std::runtime_error(
-        "cprsim_robustness [--quick] [--vectors N] [--seed S] [--jobs J] [--only NAME] FOLDER");
+        "cprsim_robustness [--quick] [--vectors N] [--others M] [--seed S] [--jobs J] [--only "
+        "NAME] "
+        "FOLDER");
   return options;
 }
 
