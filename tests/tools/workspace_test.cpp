@@ -129,7 +129,7 @@ TEST_F(Workspace, FlagsLimits) {
   const Json counts = report("beyond")["counts"];
   EXPECT_EQ(counts["beyond_joint_limits"], 5);  // left at 2.8, right at 0.4
   const std::string csv = contents(folder_ / "beyond/points.csv");
-  EXPECT_EQ(lines_with(csv, "robot::left.position robot::right.position,"), 1);
+  EXPECT_EQ(lines_with(csv, ",robot::left.position robot::right.position"), 1);
   // the scene's limit on efforts, then a tighter one
   EXPECT_LT(counts["beyond_effort_limits"], 9);
   ASSERT_EQ(run(wide + "--max-effort 1e-3 -o weak").code, 0);
