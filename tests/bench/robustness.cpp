@@ -195,7 +195,9 @@ void write_page(const std::vector<Outcome>& outcomes, const Options& options) {
   page
       << "# Random drives, from the scene alone\n\n"
          "Made by `cprsim_robustness --vectors "
-      << options.vectors << " --seed " << options.seed
+      << options.vectors
+      << (options.others > 0 ? " --others " + std::to_string(options.others) : "") << " --seed "
+      << options.seed
       << "` (tests/bench/robustness.cpp). Every robot of scenes/robots is given random drive "
          "vectors, evenly distributed in a box: the limits of its joints or, where the scene sets "
          "none, the stated range around the values that the scene begins with. Each vector is "
