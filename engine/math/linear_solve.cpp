@@ -75,6 +75,20 @@ MatX kernel_of(const MatX& C, double threshold) {
   return qr.householderQ() * Z;
 }
 
+MatX onto_kernel(const MatX& C, double threshold, const MatX& A) {
+  if (C.rows() == 0) return A;
+  Eigen::ColPivHouseholderQR<MatX> qr(C.transpose());
+  qr.setThreshold(threshold);
+  MatX turned = A;
+  turned.applyOnTheLeft(qr.householderQ().adjoint());
+  return turned.bottomRows(C.cols() - qr.rank());
+}
+
+MatX between_kernel(const MatX& C, double threshold, const MatX& A) {
+  const MatX rows = onto_kernel(C, threshold, A);
+  return onto_kernel(C, threshold, rows.transpose()).transpose();
+}
+
 // Reflections H_k = I - 2 v v^T make A upper triangular; Q = H_0 ... H_5.
 TallQr::TallQr(const Mat12x6& A) {
   Mat12x6 work = A;

@@ -42,6 +42,11 @@ SymmetricModes symmetric_modes(const MatX& K, const MatX& M);
 /// `threshold`.
 MatX kernel_of(const MatX& C, double threshold);
 
+/// Z^T A and Z^T A Z with Z = kernel_of(C, threshold), which is not formed: few rows of C make this
+/// much cheaper than products of full matrices.
+MatX onto_kernel(const MatX& C, double threshold, const MatX& A);
+MatX between_kernel(const MatX& C, double threshold, const MatX& A);
+
 /// A (12 × 6) = Q1 R with orthonormal columns Q1 and upper triangular R; the columns of Q2 complete
 /// those of Q1 to a basis. By Householder reflections.
 struct TallQr {

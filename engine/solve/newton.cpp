@@ -327,23 +327,41 @@ void soft_start(Problem& problem, SolveReport& total) {
 
 }  // namespace
 
+SolveReport hardening(Problem& problem, const SolveOptions& options) {
+  SolveReport total;
+  total.stage = SolveStage::kContinuation;
+  SolveOptions rough = options;
+  rough.tolerance = std::max(options.tolerance, 1e-4);
+  rough.max_iterations = 15;
+  // half a decade at a time, to where rods are as stiff as they are for all purposes
+  for (double softness = 0.1; softness > 5e-6; softness /= std::sqrt(10.0)) {
+    problem.set_softness(softness);
+    add_counts(total, newton(problem, rough));
+  }
+  problem.set_softness(0);
+  add_counts(total, newton(problem, options));
+  return total;
+}
+
 SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
   struct Rung {
     SolveReport (*solve)(Problem&, const SolveOptions&);
-    bool soft, bowed;
+    bool soft, bowed, gaping;  ///< gaping: only where parts must be brought together
   };
 
-  const Rung rungs[] = {{newton, true, false},
-                        {newton, false, true},
-                        {levenberg_marquardt, true, false},
-                        {continuation, false, false},
-                        {relaxation, false, false}};
+  const Rung rungs[] = {{newton, true, false, false},
+                        {newton, false, true, true},
+                        {levenberg_marquardt, true, false, false},
+                        {hardening, false, false, true},
+                        {continuation, false, false, false},
+                        {relaxation, true, false, true},
+                        {relaxation, false, false, false}};
   SolveReport total;
   const ProblemResidual first = problem.evaluate();
   total.initial_residual = first.largest;
   const bool gaping = problem.wants_soft_start() && first.largest > options.tolerance;
   for (const Rung& rung : rungs) {
-    if (rung.bowed && !gaping) continue;
+    if (rung.gaping && !gaping) continue;
     if (rung.bowed) problem.break_symmetry();
     if (rung.soft && gaping) soft_start(problem, total);
     const SolveReport part = rung.solve(problem, options);

@@ -33,14 +33,18 @@ SolveReport levenberg_marquardt(Problem& problem, const SolveOptions& options);
 /// quartered after failure.
 SolveReport continuation(Problem& problem, const SolveOptions& options);
 
+/// Newton on rods that stretch as easily as they bend at first and harden in small steps: where
+/// many stiff legs of unequal length must be brought together.
+SolveReport hardening(Problem& problem, const SolveOptions& options);
+
 /// Implicit gradient flow (pseudo-transient continuation, Kelley & Keyes, SINUM 35, 1998) from the
 /// start: drag falls as the residual does. Ends in a stable equilibrium.
 SolveReport relaxation(Problem& problem, const SolveOptions& options);
 
 /// newton, levenberg_marquardt, continuation, relaxation, in that order; the first that converges.
 /// Where parts must be brought together, newton and levenberg_marquardt begin from a rough solution
-/// with soft rods, newton a second time with rods bowed; the others begin from the scene's own
-/// start.
+/// with soft rods, newton a second time with rods bowed; hardening comes before continuation, and
+/// relaxation once from soft rods before it begins from the scene's own start.
 SolveReport solve_statics(Problem& problem, const SolveOptions& options);
 
 }  // namespace cprsim

@@ -15,7 +15,8 @@ enum class SolveStatus {
   kSingular         ///< the linearised system has no unique solution
 };
 
-/// Which rung of the ladder found (or last tried for) the solution.
+/// Which rung of the ladder found (or last tried for) the solution. Continuation is in loads and
+/// gaps, or in the rods' stiffness (hardening).
 enum class SolveStage { kNewton, kLevenbergMarquardt, kContinuation, kRelaxation };
 
 const char* to_string(SolveStatus status);

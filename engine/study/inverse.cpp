@@ -174,8 +174,7 @@ class Approach {
           return true;
         }
       }
-      e_.restore(here);
-      e_.follow();
+      e_.adopt(here);
     }
     report_.why = report_.solve.converged()
                       ? "no change of the free parameters brings the robot nearer"
@@ -218,8 +217,7 @@ InverseReport solve_inverse(StaticStudy& e, const std::vector<Parameter>& parame
     if (last && largest(goal(e)) <= 100 * options.tolerance) break;
     part *= 0.5;
     if (part < kSmallestPart || report.iterations > options.max_iterations) break;
-    e.restore(here);
-    e.follow();
+    e.adopt(here);
   }
   report.residual = largest(goal(e));
   report.reached = report.residual <= 100 * options.tolerance;

@@ -81,7 +81,7 @@ VecX PathSystem::motion(const RobotUnknowns& x, const RobotUnknowns& reference) 
   for (const auto& rod : x.rods)
     nodes += rod.nodes.size();
   for (const Joint& joint : robot.joints)
-    joints += joint.q_unknown() ? 1 : 0;
+    joints += static_cast<std::size_t>(joint.unknown_coordinates());
   VecX u(static_cast<Eigen::Index>(6 * x.bodies.size() + joints + 3 * nodes));
   Eigen::Index at = 0;
   for (std::size_t b = 0; b < x.bodies.size(); ++b, at += 6) {
@@ -89,9 +89,11 @@ VecX PathSystem::motion(const RobotUnknowns& x, const RobotUnknowns& reference) 
     u.segment<3>(at + 3) = (x.bodies[b].p - reference.bodies[b].p) / L;
   }
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    if (!robot.joints[j].q_unknown()) continue;
-    const bool slides = robot.joints[j].freedom == Joint::Freedom::kPrismatic;
-    u[at++] = (x.joint_q[j] - reference.joint_q[j]) / (slides ? L : 1);
+    const Vec3 moved = x.joint_q[j] - reference.joint_q[j];
+    const std::vector<Joint::Freedom>& freedoms = robot.joints[j].freedoms;
+    for (std::size_t k = 0; k < freedoms.size(); ++k)
+      if (freedoms[k].unknown >= 0)
+        u[at++] = moved[static_cast<Eigen::Index>(k)] / (freedoms[k].measured_as_length() ? L : 1);
   }
   const double weight = nodes > 0 ? 1 / (L * std::sqrt(static_cast<double>(nodes))) : 0;
   for (std::size_t r = 0; r < x.rods.size(); ++r)

@@ -102,14 +102,23 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
   // what a rod cannot follow, like a change of distance where it is straight and does not stretch
   out.demands = kernel_of(Cx.transpose(), kDependent).transpose() * C.rightCols<12>();
   out.inner = Z.cols();
-  MatX E = MatX::Zero(n + 12, out.inner + 12);
-  E.topLeftCorner(n, out.inner) = Z;
-  E.topRightCorner(n, 12) = X;
-  E.bottomRightCorner<12, 12>().setIdentity();
-  out.K = E.transpose() * K * E;
-  out.M = E.transpose() * M * E;
-  out.expand = E.topRows(n);
-  out.nodes = own.nodes * out.expand;
+  out.expand.resize(n, out.inner + 12);
+  out.expand << Z, X;
+  // E^T F E with E = (Z X; 0 I), block by block
+  const auto reduced = [&](const MatX& F) {
+    const MatX across = F.topLeftCorner(n, n) * X + F.topRightCorner(n, 12);
+    MatX all(out.inner + 12, out.inner + 12);
+    all.topLeftCorner(out.inner, out.inner) = between_kernel(
+        Cx, kDependent, unit.asDiagonal() * F.topLeftCorner(n, n) * unit.asDiagonal());
+    all.topRightCorner(out.inner, 12) = onto_kernel(Cx, kDependent, unit.asDiagonal() * across);
+    all.bottomLeftCorner(12, out.inner) = all.topRightCorner(out.inner, 12).transpose();
+    all.bottomRightCorner<12, 12>() =
+        X.transpose() * across + F.bottomLeftCorner(12, n) * X + F.bottomRightCorner<12, 12>();
+    return all;
+  };
+  out.K = reduced(K);
+  out.M = reduced(M);
+  if (!metric) out.nodes = own.nodes * out.expand;
   return out;
 }
 

@@ -23,7 +23,7 @@ namespace cprsim {
 struct ReducedRod {
   MatX K, M;
   MatX expand;             ///< x by (xi, y_A, y_B)
-  MatX nodes;              ///< (phi, d) at the cells' ends by (xi, y_A, y_B), for pictures
+  MatX nodes;              ///< (phi, d) at the cells' ends by (xi, y_A, y_B); not with kMetric
   MatX demands;            ///< rows on (y_A, y_B) that must vanish for the rod to follow
   Eigen::Index inner = 0;  ///< number of xi
   int base_body = -1, tip_body = -1;

@@ -76,6 +76,9 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
     // coordinates from here on do not matter yet: work on the columns up to this cell's end
     const Eigen::Index active = layout.at((c + 1) * S);
     std::vector<Rows3> phi(S);
+    // of one cell, stacked: full matrices are passed over once a cell
+    const auto rows = 3 * static_cast<Eigen::Index>(S);
+    MatX phi_all(rows, active), half_all(rows, active), d_all(rows, active), dw_all(rows, active);
     for (std::size_t j = 0; j < S; ++j) {
       const std::size_t at = c * S + j;
       const FieldPoint& point = field.points[at];
@@ -94,29 +97,30 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       Rows3 d = node.d.leftCols(active);
       for (std::size_t k = 0; k < S; ++k)
         d += h * table.a[j][k] * d_s[k];
-      // (1); a product a·B b enters as half of itself and its transpose
+      // (1); a product a·B b enters as half of itself, its transpose in the end
       auto K = out.K.topLeftCorner(active, active);
       const Eigen::Index psi = layout.at(at);
-      K.block<3, 3>(psi, psi) += w * point.R * field.K_bt.asDiagonal() * point.R.transpose();
-      const MatX twist = 0.5 * w * (hat(point.m).transpose() * phi[j]);  // rows of psi
-      K.middleRows<3>(psi) += twist;
-      K.middleCols<3>(psi) += twist.transpose();
+      K.block<3, 3>(psi, psi) += 0.5 * w * point.R * field.K_bt.asDiagonal() * point.R.transpose();
+      K.middleRows<3>(psi) += 0.5 * w * (hat(point.m).transpose() * phi[j]);  // rows of psi
       for (std::size_t e = 0; e < layout.strains.size(); ++e) {
         const Eigen::Index i = psi + 3 + static_cast<Eigen::Index>(e);
-        K(i, i) += w * field.K_se[layout.strains[e]];
+        K(i, i) += 0.5 * w * field.K_se[layout.strains[e]];
       }
       const Mat3 outer = point.tau * point.n.transpose();
       const Mat3 B = 0.5 * (outer + outer.transpose()) - point.n.dot(point.tau) * Mat3::Identity();
-      const Rows3 half = w * (0.5 * B * phi[j] + hat(point.n) * d_s[j]);
-      const MatX product = phi[j].transpose() * half;
-      K += product + product.transpose();
-      auto M = out.M.topLeftCorner(active, active);
-      M += (w * field.rhoA) * (d.transpose() * d);
+      const auto row = 3 * static_cast<Eigen::Index>(j);
+      phi_all.middleRows<3>(row) = phi[j];
+      half_all.middleRows<3>(row) = w * (0.5 * B * phi[j] + hat(point.n) * d_s[j]);
+      d_all.middleRows<3>(row) = d;
+      dw_all.middleRows<3>(row) = (w * field.rhoA) * d;
       if (rotary) {
         const Rows3 spin = point.R.transpose() * phi[j];
-        M += w * (spin.transpose() * field.rhoJ.asDiagonal() * spin);
+        const Rows3 weighted = w * field.rhoJ.asDiagonal() * spin;
+        out.M.topLeftCorner(active, active).noalias() += spin.transpose() * weighted;
       }
     }
+    out.K.topLeftCorner(active, active).noalias() += phi_all.transpose() * half_all;
+    out.M.topLeftCorner(active, active).noalias() += d_all.transpose() * dw_all;
     for (std::size_t k = 0; k < S; ++k) {
       node.d.leftCols(active) += h * table.b[k] * d_s[k];
       node.phi.middleCols<3>(layout.at(c * S + k)).diagonal().array() += h * table.b[k];
@@ -125,6 +129,7 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
     out.nodes.middleRows<3>(row) = node.phi;
     out.nodes.middleRows<3>(row + 3) = node.d;
   }
+  out.K += MatX(out.K.transpose());
   out.tip.resize(6, n);
   out.tip << node.phi, node.d;
   return out;

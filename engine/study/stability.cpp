@@ -39,6 +39,16 @@ VecX held_stiffnesses(const ReducedRod& rod) {
   return lowest_modes(rod.K.topLeftCorner(k, k), rod.M.topLeftCorner(k, k)).values;
 }
 
+/// Signs of a rod with its ends held. Most rods are stable by far, which a triangular decomposition
+/// shows at a fraction of the cost of eigenvalues.
+Signs held_signs(const ReducedRod& rod, double nothing) {
+  const Eigen::Index k = rod.inner;
+  if (k == 0) return {};
+  const auto K = rod.K.topLeftCorner(k, k), M = rod.M.topLeftCorner(k, k);
+  if (is_positive_definite(K - nothing * M)) return {};
+  return signs(held_stiffnesses(rod), nothing);
+}
+
 double nothing_of(const Robot& robot) {
   return kNothing * robot.scale.force / robot.scale.length;
 }
@@ -112,7 +122,7 @@ Stability count_unstable(const StaticStudy& study) {
   const double nothing = nothing_of(robot);
   Signs all;
   for (const ReducedRod& rod : v.rods) {
-    const Signs own = signs(held_stiffnesses(rod), nothing);
+    const Signs own = held_signs(rod, nothing);
     out.in_rods.push_back(own.negative);
     all.negative += own.negative;
     all.none += own.none;

@@ -218,6 +218,12 @@ void StaticStudy::adopt() {
   has_solved_ = true;
 }
 
+void StaticStudy::adopt(const State& equilibrium) {
+  restore(equilibrium);
+  solved_ = equilibrium;
+  has_solved_ = true;
+}
+
 Snapshot StaticStudy::snapshot() const {
   return take_snapshot(*robot_, nullptr, 0);
 }

@@ -72,6 +72,9 @@ class StaticStudy {
 
   State state() const;
   void restore(const State& state);
+  /// Returns to an equilibrium found before; follow() goes on from there, whatever was solved
+  /// since.
+  void adopt(const State& equilibrium);
 
   /// The present shape and values, found in equilibrium by other means, are where follow() starts.
   void adopt();

@@ -16,4 +16,7 @@ int path_command(const Words& words);      ///< equilibria through folds and bra
 int explain_command(const Words& words);   ///< the meaning of a code
 int doctor_command(const Words& words);    ///< what this machine can do
 
+/// What a robot reaches, of that what is stable and within limits.
+int workspace_command(const Words& words);
+
 }  // namespace cprsim

@@ -177,7 +177,7 @@ int identify_command(const Words& words) {
   if (const int* code = std::get_if<int>(&prepared)) return *code;
   const Study& study = std::get<Study>(prepared);
   const OutputFolder folder(choose_output_folder(options.output, study.label + "_identify"),
-                            "identify.json");
+                            {"identify.json", "cprsim-identify/"});
 
   const Stopwatch watch;
   SceneFit model(study);

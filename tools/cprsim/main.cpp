@@ -30,6 +30,7 @@ Examples
   cprsim info scene.xml                     stiffness, frequencies, effects and their advisor
   cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0
   cprsim identify scene.xml tips.csv --fit rod/material/youngs_modulus
+  cprsim workspace scene.xml --random 1000  what drives reach: stable, within limits
 
 Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
@@ -39,6 +40,7 @@ Commands
   solve modes              equilibria, inverse problems, stability, natural frequencies
   path                     equilibria through folds and branch points
   identify                 fit values of a scene to measurements
+  workspace                what a robot reaches: a sweep of drives or poses
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -59,12 +61,16 @@ struct Command {
   int (*start)(const Words&);
 };
 
-constexpr std::array kCommands{
-    Command{"run", run_command},           Command{"check", check_command},
-    Command{"info", info_command},         Command{"solve", solve_command},
-    Command{"modes", modes_command},       Command{"path", path_command},
-    Command{"identify", identify_command}, Command{"explain", explain_command},
-    Command{"doctor", doctor_command}};
+constexpr std::array kCommands{Command{"run", run_command},
+                               Command{"check", check_command},
+                               Command{"info", info_command},
+                               Command{"solve", solve_command},
+                               Command{"modes", modes_command},
+                               Command{"path", path_command},
+                               Command{"workspace", workspace_command},
+                               Command{"identify", identify_command},
+                               Command{"explain", explain_command},
+                               Command{"doctor", doctor_command}};
 
 bool names_a_scene(const std::string& word) {
   const auto ends_in = [&](std::string_view end) { return word.ends_with(end); };

@@ -30,13 +30,11 @@ bool is_inside(const fs::path& name) {
 }
 
 /// The files that an earlier run listed.
-std::vector<std::string> files_of_earlier_run(const fs::path& run_json) {
-  std::ifstream stream(run_json);
+std::vector<std::string> files_of_earlier_run(const fs::path& path, const std::string& schema) {
+  std::ifstream stream(path);
   const nlohmann::json report = nlohmann::json::parse(stream, nullptr, false);
-  const std::string kind = "cprsim-" + run_json.stem().string() + "/";
-  if (!report.is_object() || report.value("schema", "").rfind(kind, 0) != 0) {
-    throw OutputError(run_json.string() +
-                      " was not written by cprsim; choose another folder with -o");
+  if (!report.is_object() || report.value("schema", "").rfind(schema, 0) != 0) {
+    throw OutputError(path.string() + " was not written by cprsim; choose another folder with -o");
   }
   std::vector<std::string> names;
   for (const nlohmann::json& file : report.value("files", nlohmann::json::array())) {
@@ -60,16 +58,16 @@ void remove_frames(const fs::path& folder) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path path, std::string report)
+OutputFolder::OutputFolder(fs::path path, ReportFile report, bool keep)
     : path_(std::move(path)), report_(std::move(report)) {
   std::error_code error;
   fs::create_directories(path_, error);
   if (error) throw OutputError("cannot create " + path_.string() + ": " + error.message());
   lock_.take(path_);
-  if (fs::exists(path_ / report_)) {
-    remove_earlier_run();
+  if (fs::exists(path_ / report_.name)) {
+    if (!keep) remove_earlier_run();
   } else if (!fs::is_empty(path_)) {
-    throw OutputError(path_.string() + " holds files but no " + report_ +
+    throw OutputError(path_.string() + " holds files but no " + report_.name +
                       ", so cprsim did not write them and leaves them "
                       "alone; choose another folder with -o");
   }
@@ -92,7 +90,7 @@ void OutputFolder::Lock::take(const fs::path& folder) {
 
 void OutputFolder::remove_earlier_run() const {
   std::error_code ignored;
-  for (const std::string& name : files_of_earlier_run(path_ / report_)) {
+  for (const std::string& name : files_of_earlier_run(path_ / report_.name, report_.schema)) {
     const fs::path file = path_ / name;
     if (name.back() == '/') {
       remove_frames(file.parent_path());
@@ -101,7 +99,7 @@ void OutputFolder::remove_earlier_run() const {
       fs::remove(file.string() + ".part", ignored);
     }
   }
-  fs::remove(path_ / report_, ignored);
+  fs::remove(path_ / report_.name, ignored);
 }
 
 fs::path choose_output_folder(const std::string& option, const std::string& label) {

@@ -12,10 +12,17 @@
 
 namespace cprsim {
 
+/// By which a folder is known as ours: lists what was written beside it.
+struct ReportFile {
+  std::string name = "run.json";
+  std::string schema = "cprsim-run/";  ///< what "schema" in it begins with
+};
+
 class OutputFolder {
  public:
-  /// Creates or empties the folder and locks it against a second run. @throws OutputError
-  explicit OutputFolder(std::filesystem::path path, std::string report = "run.json");
+  /// Creates or empties the folder (`keep`: leaves what is ours in it) and locks it against a
+  /// second run. @throws OutputError
+  explicit OutputFolder(std::filesystem::path path, ReportFile report = {}, bool keep = false);
 
   const std::filesystem::path& path() const { return path_; }
 
@@ -36,7 +43,7 @@ class OutputFolder {
   void remove_earlier_run() const;
 
   std::filesystem::path path_;
-  std::string report_;
+  ReportFile report_;
   Lock lock_;
 };
 

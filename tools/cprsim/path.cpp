@@ -149,7 +149,8 @@ int run(const PathWords& w, const Scene& scene, const Console& console) {
   const PathSetup setup =
       set_up(study, w, probes.empty() ? std::vector<Parameter>{} : study.probe(0));
   const std::string label = label_of(w.path, scene);
-  const OutputFolder folder(choose_output_folder(w.output, label + "_path"), "path.json");
+  const OutputFolder folder(choose_output_folder(w.output, label + "_path"),
+                            {"path.json", "cprsim-path/"});
 
   PathOptions options;
   options.largest_step = w.largest_step.value_or(options.largest_step);

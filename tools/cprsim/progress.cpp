@@ -64,4 +64,49 @@ void Progress::finish() {
   on_screen_ = false;
 }
 
+CountProgress::CountProgress(ProgressStyle style, std::string name, std::size_t before,
+                             std::size_t total)
+    : style_(style),
+      name_(std::move(name)),
+      before_(before),
+      total_(total),
+      began_(Clock::now()),
+      tenths_(total > 0 ? 10 * before / total : 0) {}
+
+void CountProgress::update(std::size_t done) {
+  if (style_ == ProgressStyle::kNone || total_ == 0) return;
+  const Clock::time_point now = Clock::now();
+  const auto seconds = [&](Clock::time_point since) {
+    return std::chrono::duration<double>(now - since).count();
+  };
+  if (style_ == ProgressStyle::kBar) {
+    if (on_screen_ && seconds(drawn_) < kRedrawSeconds) return;
+    const double fraction = static_cast<double>(done) / static_cast<double>(total_);
+    const auto full = static_cast<std::size_t>(std::lround(fraction * kBarWidth));
+    std::string line = fmt::format("{}  [{}{}]  {}/{}", name_, std::string(full, '#'),
+                                   std::string(kBarWidth - full, '-'), done, total_);
+    if (done > before_) {
+      const double each = seconds(began_) / static_cast<double>(done - before_);
+      const long left = std::lround(each * static_cast<double>(total_ - done));
+      line += fmt::format("  ETA {}:{:02}", left / 60, left % 60);
+    }
+    fmt::print(stderr, "\r{}\033[K", line);
+    std::fflush(stderr);
+    drawn_ = now;
+    on_screen_ = true;
+    return;
+  }
+  const std::size_t tenths = 10 * done / total_;
+  if (tenths <= tenths_) return;
+  tenths_ = tenths;
+  fmt::print(stderr, "{}: {:3} %  {} of {}, {:.1f} s wall\n", name_, 10 * tenths, done, total_,
+             seconds(began_));
+}
+
+void CountProgress::finish() {
+  if (on_screen_) fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  on_screen_ = false;
+}
+
 }  // namespace cprsim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 #include "tools/cprsim/console.h"
@@ -25,6 +26,25 @@ class Progress {
   double end_time_;
   Clock::time_point began_, drawn_;
   int tenths_ = 0;
+  bool on_screen_ = false;
+};
+
+/// The same for work that is counted: "workspace  [#####---]  1840/3000  ETA 0:07".
+class CountProgress {
+ public:
+  CountProgress(ProgressStyle style, std::string name, std::size_t before, std::size_t total);
+
+  void update(std::size_t done);
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  ProgressStyle style_;
+  std::string name_;
+  std::size_t before_, total_;  ///< done before this began
+  Clock::time_point began_, drawn_;
+  std::size_t tenths_;
   bool on_screen_ = false;
 };
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cprsim/workspace_options.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "tools/sinks/csv.h"
+
+namespace cprsim {
+
+namespace {
+
+constexpr const char* kAbout =
+    "Solves many equilibria and tells which are reached, stable and within limits. A grid or "
+    "random\n"
+    "points (--random) of drives, by default in the box of the joints' limits; with --pose a grid\n"
+    "of poses of a frame, to which drives are found. Each point is solved from the scene alone.\n"
+    "Writes points as CSV and VTK, a picture (SVG) and workspace.json.\n\n"
+    "Examples\n"
+    "  cprsim workspace robot.xml --vary robot::left=-1:1:41 --vary robot::right=-1:1:41\n"
+    "  cprsim workspace robot.xml --random 10000 --seed 7 --max-effort 20 -j 4\n"
+    "  cprsim workspace robot.xml --vary 'robot::leg_*=0.35:0.45' --random 1000\n"
+    "  cprsim workspace robot.xml --pose robot::platform --vary x=-0.1:0.1:21 --vary z=0.3:0.5:21\n"
+    "Freedoms of the frame that are not varied are held where the scene's equilibrium has them if\n"
+    "there are six drives or more, else they are left free; --hold says otherwise.";
+
+double number(const std::string& option, const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) {
+    throw CLI::ValidationError(option, "'" + text + "' is not a number");
+  }
+  return value;
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == at)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+VaryOption vary_of(const std::string& text) {
+  VaryOption vary;
+  const std::size_t equals = text.find('=');
+  vary.name = text.substr(0, equals);
+  if (vary.name.empty()) throw CLI::ValidationError("--vary", "'" + text + "' names nothing");
+  if (equals == std::string::npos) return vary;
+  const std::vector<std::string> parts = split(text.substr(equals + 1), ':');
+  if (parts.size() < 2 || parts.size() > 3) {
+    throw CLI::ValidationError("--vary", "'" + text + "' is not of the form NAME=LOW:HIGH[:COUNT]");
+  }
+  vary.low = number("--vary", parts[0]);
+  vary.high = number("--vary", parts[1]);
+  if (*vary.low > *vary.high) {
+    throw CLI::ValidationError("--vary", "'" + text + "' ends below where it begins");
+  }
+  if (parts.size() == 3) {
+    const auto count = whole_number(parts[2]);
+    if (!count || *count < 1 || *count > 10000000) {
+      throw CLI::ValidationError("--vary", "'" + parts[2] + "' is not a number of values");
+    }
+    vary.count = static_cast<int>(*count);
+  }
+  return vary;
+}
+
+NumberOption number_of(const std::string& option, const std::string& text, bool name_first) {
+  const std::size_t equals = text.find('=');
+  NumberOption result;
+  if (equals != std::string::npos) {
+    result.name = text.substr(0, equals);
+    result.value = number(option, text.substr(equals + 1));
+  } else if (name_first) {
+    result.name = text;
+  } else {
+    result.value = number(option, text);
+  }
+  return result;
+}
+
+void add_texts(CLI::App& app, const std::string& name, const std::string& type,
+               const std::string& help, const std::function<void(const std::string&)>& take) {
+  app.add_option_function<std::vector<std::string>>(
+         name,
+         [take](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             take(text);
+         },
+         help)
+      ->type_name(type)
+      ->allow_extra_args(false);
+}
+
+void add_own_options(CLI::App& app, WorkspaceOptions& options) {
+  add_texts(app, "--vary", "NAME[=LOW:HIGH[:COUNT]]",
+            "A drive, or with --pose one of x y z roll pitch yaw; repeatable",
+            [&options](const std::string& text) { options.vary.push_back(vary_of(text)); });
+  add_count(app, "--random", options.random, 1, "So many random points instead of a grid");
+  app.add_option("--pose", options.pose, "Find drives that bring this frame to poses")
+      ->type_name("FRAME");
+  add_texts(app, "--hold", "FREEDOM[=VALUE]", "With --pose: held, not free; 'none': all free",
+            [&options](const std::string& text) {
+              for (const std::string& part : split(text, ','))
+                options.hold.push_back(number_of("--hold", part, true));
+            });
+  add_texts(app, "--drive", "ROD", "The length of an undriven rod is a drive, too",
+            [&options](const std::string& text) { options.drives.push_back(text); });
+  add_texts(app, "--max-effort", "[DRIVE=]NUMBER", "Flag points that need more, N or N m",
+            [&options](const std::string& text) {
+              options.max_effort.push_back(number_of("--max-effort", text, false));
+              if (*options.max_effort.back().value < 0) {
+                throw CLI::ValidationError("--max-effort", "'" + text + "' is below 0");
+              }
+            });
+  app.add_option("--frame", options.frame, "Whose pose is told (default: what most rods hold)")
+      ->type_name("FRAME");
+  app.add_option("--view", options.view, "Plane of the picture: xy, xz or yz (default: the widest)")
+      ->type_name("PLANE")
+      ->check(CLI::IsMember({"xy", "xz", "yz"}));
+  app.add_option("-o,--output", options.output, "Folder (default out/<scene>_workspace)")
+      ->type_name("DIR");
+  app.add_flag("--resume", options.resume, "Go on where an interrupted one stopped");
+  add_count(app, "-j,--jobs", options.jobs, 1, "Threads (default: all cores)");
+}
+
+std::string range_text(const VaryOption& vary) {
+  std::string text = vary.name;
+  if (vary.low) text += "=" + shortest(*vary.low) + ":" + shortest(*vary.high);
+  if (vary.count) text += ":" + std::to_string(*vary.count);
+  return text;
+}
+
+std::string number_text(const NumberOption& option) {
+  if (!option.value) return option.name;
+  return (option.name.empty() ? "" : option.name + "=") + shortest(*option.value);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> WorkspaceOptions::given() const {
+  auto list = cprsim::given(scene);
+  for (const VaryOption& each : vary)
+    list.emplace_back("--vary", range_text(each));
+  if (random > 0) list.emplace_back("--random", std::to_string(random));
+  for (const std::string& each : drives)
+    list.emplace_back("--drive", each);
+  if (!pose.empty()) list.emplace_back("--pose", pose);
+  for (const NumberOption& each : hold)
+    list.emplace_back("--hold", number_text(each));
+  for (const NumberOption& each : max_effort)
+    list.emplace_back("--max-effort", number_text(each));
+  if (!frame.empty()) list.emplace_back("--frame", frame);
+  if (!view.empty()) list.emplace_back("--view", view);
+  return list;
+}
+
+std::variant<WorkspaceOptions, int> parse_workspace_options(const Words& words) {
+  WorkspaceOptions options;
+  CLI::App app(kAbout, "cprsim workspace");
+  app.add_option("SCENE", options.path, "The scene file; - reads standard input")
+      ->required()
+      ->type_name("");
+  add_own_options(app, options);
+  add_scene_options(app, options.scene);
+  add_console_options(app, options.console);
+  if (const auto code = parse(app, words)) return *code;
+  return options;
+}
+
+}  // namespace cprsim
