@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/run/simulation.h"
 #include "engine/fit/least_squares.h"
+#include "engine/run/simulation.h"
 #include "tools/cprsim/identify_study.h"
 
 namespace cprsim {

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "engine/model/channel.h"
 #include "engine/fit/fit_parameter.h"
+#include "engine/model/channel.h"
 #include "scenes/loader/load.h"
 #include "tools/cprsim/identify_options.h"
 #include "tools/cprsim/measured_table.h"

@@ -58,8 +58,8 @@ double euler(double factor) {
 }
 
 TEST(Stability, EulerColumnWithBothEndsPinned) {
-  const double force = critical_force(column(EndJoint::kUniversal, EndJoint::kUniversal),
-                                      euler(0.5), euler(1.5));
+  const double force =
+      critical_force(column(EndJoint::kUniversal, EndJoint::kUniversal), euler(0.5), euler(1.5));
   EXPECT_NEAR(force / euler(1), 1, 1e-5);
 }
 
@@ -88,8 +88,8 @@ TEST(Stability, EulerColumnWithAFreeEnd) {
   EXPECT_NEAR(force / euler(0.25), 1, 1e-5);
 }
 
-// A shaft clamped at both ends, one free to slide, twisted by an angle: tan x = x with x = M L / 2 EI
-// (Greenhill 1883).
+// A shaft clamped at both ends, one free to slide, twisted by an angle: tan x = x with x = M L / 2
+// EI (Greenhill 1883).
 TEST(Stability, TwistedShaftClampedAtBothEnds) {
   Scene scene = column(EndJoint::kFixed, EndJoint::kFixed);
   scene.loads.clear();
