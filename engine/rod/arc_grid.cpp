@@ -45,4 +45,11 @@ int wanted_segments(double growth_exponent, int cells, int now) {
   return wanted < now && 2 * wanted > now ? now : wanted;
 }
 
+std::vector<std::size_t> segment_starts(int segments, int cells) {
+  std::vector<std::size_t> first;
+  for (int g = 0; g <= segments; ++g)
+    first.push_back(static_cast<std::size_t>(cells * g / segments));
+  return first;
+}
+
 }  // namespace cprsim

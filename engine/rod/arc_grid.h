@@ -19,4 +19,7 @@ std::vector<std::size_t> nodes_at(const std::vector<double>& grid,
 /// enough and not clearly too many, which keeps warm starts.
 int wanted_segments(double growth_exponent, int cells, int now);
 
+/// The first cell of each segment, as equal as they can be, and the number of cells.
+std::vector<std::size_t> segment_starts(int segments, int cells);
+
 }  // namespace cprsim

@@ -7,6 +7,7 @@
 
 #include "engine/math/types.h"
 #include "engine/rod/cell.h"
+#include "engine/section/section.h"
 
 namespace cprsim {
 
@@ -28,5 +29,9 @@ struct RodField {
   double rhoA = 0;
   Vec3 rhoJ = Vec3::Zero();  ///< whether or not the scene lists rotary inertia
 };
+
+/// The part that a cross-section decides; a strain that is not free has no stiffness here.
+void describe_section(RodField& field, const SectionProperties& section, bool shear,
+                      bool extension);
 
 }  // namespace cprsim

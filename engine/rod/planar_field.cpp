@@ -27,11 +27,7 @@ RodField PlanarRod::field() const {
   };
   f.base = end_state(starts_.front());
   f.tip = end_state(nodes_.back());
-  f.K_bt = section_.K_bt;
-  if (options_.shear) f.K_se.head<2>() = section_.K_se.head<2>();
-  if (options_.extension) f.K_se.z() = section_.K_se.z();
-  f.rhoA = section_.rhoA;
-  f.rhoJ = section_.rhoJ;
+  describe_section(f, section_, options_.shear, options_.extension);
   return f;
 }
 

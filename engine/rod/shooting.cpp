@@ -178,10 +178,8 @@ void ShootingRod::choose_segments() {
   // before the first evaluation there are no states to start segments from
   if (wanted == segments() || !evaluated_) return;
   const NodeState base = starts_.front();
-  segment_first_.assign(static_cast<std::size_t>(wanted) + 1, 0);
+  segment_first_ = segment_starts(wanted, cells_);
   starts_.assign(static_cast<std::size_t>(wanted), base);
-  for (int g = 0; g <= wanted; ++g)
-    segment_first_[static_cast<std::size_t>(g)] = static_cast<std::size_t>(cells_ * g / wanted);
   for (std::size_t g = 1; g < starts_.size(); ++g)
     starts_[g] = nodes_[segment_first_[g]];
 }

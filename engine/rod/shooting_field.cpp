@@ -19,11 +19,7 @@ RodField ShootingRod::field() const {
   }
   f.base = starts_.front();
   f.tip = nodes_.back();
-  f.K_bt = section_.K_bt;
-  if (options_.shear) f.K_se.head<2>() = section_.K_se.head<2>();
-  if (options_.extension) f.K_se.z() = section_.K_se.z();
-  f.rhoA = section_.rhoA;
-  f.rhoJ = section_.rhoJ;
+  describe_section(f, section_, options_.shear, options_.extension);
   return f;
 }
 

@@ -93,6 +93,46 @@ inline Scene stewart_gough(const std::vector<double>& lengths, bool clamped,
   return scene;
 }
 
+/// The published robot, legs free to spin, with a length drive on each.
+inline Scene stewart_gough_driven(const std::vector<double>& lengths) {
+  Scene scene = stewart_gough(lengths, false);
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    DriveSpec drive;
+    drive.quantity = DriveQuantity::kLength;
+    drive.rod = static_cast<int>(i);
+    ProfileTerm term;
+    term.value = lengths[i];
+    drive.profile.terms.push_back(term);
+    scene.drives.push_back(drive);
+  }
+  return scene;
+}
+
+/// A steel rod along z whose tip is held by a body that slides on z, pressed down by a force.
+inline Scene column(double length, double radius, EndJoint base, EndJoint tip, double force) {
+  Scene scene;
+  RodSpec rod = steel_rod(length, radius);
+  rod.base.joint = base;
+  rod.tip.joint = tip;
+  rod.tip.at = {0, Pose{}};
+  scene.rods.push_back(rod);
+  BodySpec slider;
+  slider.name = "slider";
+  slider.X_WB.p = {0, 0, length};
+  scene.bodies.push_back(slider);
+  JointSpec rail;
+  rail.name = "rail";
+  rail.kind = JointKind::kPrismatic;
+  rail.child = 0;
+  rail.X_PJ.p = {0, 0, length};
+  scene.joints.push_back(rail);
+  LoadSpec load;
+  load.at.body = 0;
+  load.force = {0, 0, -force};
+  scene.loads.push_back(load);
+  return scene;
+}
+
 /// The static equilibrium from the scene alone.
 struct Equilibrium {
   Robot robot;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ class App;
 }
 
 namespace cprsim {
+
+/// Words that make sense to the parser and none here: exit code 2. Its text is for people.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 using Words = std::vector<std::string>;
 

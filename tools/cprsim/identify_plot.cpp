@@ -2,27 +2,17 @@
 // The residual plot: measured against computed, and what is left, one row of pictures a channel.
 // gnuplot draws it from a script that stays beside it.
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdio>
 
+#include "tools/cprsim/gnuplot.h"
 #include "tools/cprsim/identify_result.h"
-#include "tools/sinks/output_file.h"
 
 namespace cprsim {
 
 namespace {
 
 constexpr std::size_t kMostChannels = 8;
-
-/// A text as gnuplot takes it literally.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text)
-    out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
 
 std::string script_of(const Study& study) {
   const std::size_t count = std::min(study.matches.size(), kMostChannels);
@@ -39,23 +29,25 @@ std::string script_of(const Study& study) {
   text +=
       "set border 3\nset tics nomirror\nset grid lt 1 lc rgb '#e4e4e4'\nset key outside top center "
       "horizontal\n";
-  text += fmt::format("set multiplot layout {},2\nset xlabel {}\n", count, quoted(axis));
+  text += fmt::format("set multiplot layout {},2\nset xlabel {}\n", count, gnuplot_quoted(axis));
   const std::string points = study.dynamic() ? "points pt 7 ps 0.25" : "points pt 7 ps 0.9";
   const std::string lines = study.dynamic() ? "lines lw 1.2" : "points pt 6 ps 1.6 lw 1.5";
   if (!study.dynamic()) text += "set offsets 0.5, 0.5, 0, 0\nset xtics 1\n";
   for (std::size_t m = 0; m < count; ++m) {
     const Channel& channel = study.matches[m].channel;
     const auto pick = [&](int column, const std::string& factor) {
-      return fmt::format("2:(strcol(3) eq {} ? ${}{} : NaN)", quoted(channel.name), column, factor);
+      return fmt::format("2:(strcol(3) eq {} ? ${}{} : NaN)", gnuplot_quoted(channel.name), column,
+                         factor);
     };
-    text +=
-        fmt::format("set ylabel {} noenhanced\n", quoted(channel.name + " [" + channel.unit + "]"));
+    text += fmt::format("set ylabel {} noenhanced\n",
+                        gnuplot_quoted(channel.name + " [" + channel.unit + "]"));
     text += fmt::format(
         "plot data skip 1 using {} with {} lc rgb '#bbbbbb' title 'at the start', \\\n"
         "  data skip 1 using {} with {} lc rgb '#4e79a7' title 'measured', \\\n"
         "  data skip 1 using {} with {} lc rgb '#e15759' title 'computed'\n",
         pick(6, ""), lines, pick(5, ""), points, pick(7, ""), lines);
-    text += fmt::format("set ylabel {}\n", quoted("computed - measured [" + channel.unit + "]"));
+    text += fmt::format("set ylabel {}\n",
+                        gnuplot_quoted("computed - measured [" + channel.unit + "]"));
     text += fmt::format(
         "plot 0 with lines lc rgb '#888888' notitle, \\\n"
         "  data skip 1 using {} with {} lc rgb '#4e79a7' notitle\n",
@@ -68,25 +60,10 @@ std::string script_of(const Study& study) {
 
 bool draw_residuals(const Study& study, const std::filesystem::path& folder,
                     const Console& console) {
-  const std::string script = script_of(study);
-  write_file(folder / "identify.gp", script);
   if (study.matches.size() > kMostChannels)
     console.warn(
         fmt::format("the plot shows {} of {} channels", kMostChannels, study.matches.size()));
-  const std::string later =
-      "identify.svg was not drawn; later: cd " + folder.string() + " && gnuplot identify.gp";
-  std::FILE* pipe = ::popen("gnuplot 2>/dev/null", "w");
-  if (pipe == nullptr) {
-    console.warn(later);
-    return false;
-  }
-  const std::string text = "folder = " + quoted(folder.string()) + "\n" + script;
-  std::fwrite(text.data(), 1, text.size(), pipe);
-  const int status = ::pclose(pipe);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  const bool absent = WIFEXITED(status) && WEXITSTATUS(status) == 127;
-  console.warn((absent ? "gnuplot is not installed, " : "gnuplot failed, ") + later);
-  return false;
+  return draw_with_gnuplot(folder, "identify", script_of(study), console);
 }
 
 }  // namespace cprsim

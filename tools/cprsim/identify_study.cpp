@@ -16,12 +16,6 @@ namespace cprsim {
 
 namespace {
 
-/// A command line that does not fit the table or the scene: exit code 2.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 const MeasuredColumn& column_named(const MeasuredTable& table, const std::string& name) {
   if (const MeasuredColumn* column = table.find(name)) return *column;
   throw UsageError(

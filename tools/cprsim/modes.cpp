@@ -15,6 +15,7 @@
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/scene_options.h"
 #include "tools/cprsim/static_words.h"
+#include "tools/cprsim/study_command.h"
 #include "tools/sinks/film_sink.h"
 #include "tools/sinks/output_file.h"
 #include "tools/sinks/view.h"
@@ -133,13 +134,7 @@ void film(const StaticStudy& study, const VibrationMode& mode, const ModesWords&
 
 int run(const ModesWords& w, const Scene& scene, const Console& console) {
   StaticStudy study(scene, w.at.value_or(0));
-  const SolveReport report = study.solve();
-  if (!report.converged()) {
-    console.error(fmt::format("no equilibrium found: {} after {} iterations, residual {:.1e} in {}",
-                              to_string(report.status), report.iterations, report.residual,
-                              report.worst_row));
-    return kExitSimulationFailed;
-  }
+  require_equilibrium(study.solve());
   const int film_mode = std::max(1, w.film);
   const std::vector<VibrationMode> modes = natural_modes(study, std::max(w.count, film_mode));
   const Stability stability = judge(study);
@@ -159,7 +154,7 @@ int run(const ModesWords& w, const Scene& scene, const Console& console) {
   console.say(text);
   if (w.video.empty()) return kExitDone;
   if (static_cast<std::size_t>(film_mode) > modes.size())
-    throw WordError(fmt::format("--mode: there are only {} modes", modes.size()));
+    throw UsageError(fmt::format("--mode: there are only {} modes", modes.size()));
   film(study, modes[static_cast<std::size_t>(film_mode - 1)], w);
   console.say(fmt::format("  wrote {}\n", w.video));
   return kExitDone;
@@ -171,17 +166,8 @@ int modes_command(const Words& words) {
   ModesWords w;
   if (const auto code = read_words(w, words)) return *code;
   const Console console(w.console);
-  const LoadedScene loaded = load_and_show(w.path, w.scene, console);
-  if (loaded.scene == nullptr) return kExitSceneInvalid;
-  try {
-    return run(w, *loaded.scene, console);
-  } catch (const WordError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const std::invalid_argument& error) {
-    console.error(w.path + ": " + error.what());
-    return kExitSceneInvalid;
-  }
+  return answer(w.path, w.scene, console,
+                [&](const Scene& scene) { return run(w, scene, console); });
 }
 
 }  // namespace cprsim

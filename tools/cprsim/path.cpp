@@ -15,18 +15,12 @@
 #include "tools/cprsim/path_words.h"
 #include "tools/cprsim/static_words.h"
 #include "tools/cprsim/stopwatch.h"
+#include "tools/cprsim/study_command.h"
 #include "tools/sinks/output_file.h"
 
 namespace cprsim {
 
 namespace {
-
-std::vector<Channel> found_channels(const Scene& scene, const std::string& pattern) {
-  std::vector<Channel> found = find_channels(scene, pattern);
-  if (found.empty())
-    throw WordError(not_one_of(pattern, "a channel", nearest_channels(scene, pattern)));
-  return found;
-}
 
 /// Those asked for; else poses of all links that move, or the tips of rods.
 std::vector<Channel> channels_of(const StaticStudy& study, const PathWords& w) {
@@ -44,7 +38,7 @@ std::vector<Channel> channels_of(const StaticStudy& study, const PathWords& w) {
   if (!w.plot.empty()) patterns.push_back(w.plot);
   std::vector<Channel> all;
   for (const std::string& pattern : patterns)
-    for (Channel& channel : found_channels(scene, pattern))
+    for (Channel& channel : channels_named(scene, "--channel", pattern))
       if (std::none_of(all.begin(), all.end(),
                        [&](const Channel& c) { return c.name == channel.name; }))
         all.push_back(std::move(channel));
@@ -55,7 +49,7 @@ std::vector<Channel> channels_of(const StaticStudy& study, const PathWords& w) {
 /// wins against an orientation by its weight in metres over the robot's length.
 Channel plotted(StaticStudy& study, const PathWords& w, const PathResult& result,
                 const PathScale& scale, const std::vector<Channel>& channels) {
-  if (!w.plot.empty()) return found_channels(study.scene(), w.plot).front();
+  if (!w.plot.empty()) return channels_named(study.scene(), "--plot", w.plot).front();
   std::vector<double> low(channels.size(), 1e300), high(channels.size(), -1e300);
   for (const NamedPath& named : result.paths)
     for (const PathPoint& point : named.path.points) {
@@ -141,7 +135,7 @@ int run(const PathWords& w, const Scene& scene, const Console& console) {
   if (!w.load.empty()) {
     const LoadWords load = load_words(w.load);
     if (load_at_target(scene, load.target) < 0)
-      probes.push_back({frame_named(scene, load.target), {0, 0, 0}, {0, 0, 0}});
+      probes.push_back({frame_named(scene, "--load", load.target), {0, 0, 0}, {0, 0, 0}});
   }
   const Stopwatch watch;
   StaticStudy study(scene, w.at.value_or(0), probes);
@@ -187,20 +181,8 @@ int path_command(const Words& words) {
   if (const int* code = std::get_if<int>(&read)) return *code;
   const PathWords& w = std::get<PathWords>(read);
   const Console console(w.console);
-  const LoadedScene loaded = load_and_show(w.path, w.scene, console);
-  if (loaded.scene == nullptr) return kExitSceneInvalid;
-  try {
-    return run(w, *loaded.scene, console);
-  } catch (const WordError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const PathStartError& error) {
-    console.error(error.what());
-    return kExitSimulationFailed;
-  } catch (const std::invalid_argument& error) {
-    console.error(w.path + ": " + error.what());
-    return kExitSceneInvalid;
-  }
+  return answer(w.path, w.scene, console,
+                [&](const Scene& scene) { return run(w, scene, console); });
 }
 
 }  // namespace cprsim

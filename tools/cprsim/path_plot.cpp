@@ -2,26 +2,17 @@
 // Parameter against a channel along all paths: stable solid, unstable dashed, events marked.
 // gnuplot draws it from a script with the data in it.
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
 
 #include "engine/run/observe.h"
+#include "tools/cprsim/gnuplot.h"
 #include "tools/cprsim/path_words.h"
-#include "tools/sinks/output_file.h"
 
 namespace cprsim {
 
 namespace {
-
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text)
-    out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
 
 struct Curves {
   std::string stable, unstable;       ///< lines of x y, gaps between pieces
@@ -92,9 +83,10 @@ std::string script_of(const Curves& curves, const PathScale& scale, const Channe
       "set output folder.'/path.svg'\nset border 3\nset tics nomirror\nset grid lt 1 lc rgb "
       "'#e4e4e4'\nset key outside top center horizontal\nset offsets graph 0.02, graph 0.02, graph "
       "0.05, graph 0.05\n";
-  text += "set title " + quoted(title) + " noenhanced\n";
-  text += "set xlabel " + quoted(scale.name + " [" + scale.unit + "]") + " noenhanced\n";
-  text += "set ylabel " + quoted(channel.name + " [" + channel.unit + "]") + " noenhanced\n";
+  text += "set title " + gnuplot_quoted(title) + " noenhanced\n";
+  text += "set xlabel " + gnuplot_quoted(scale.name + " [" + scale.unit + "]") + " noenhanced\n";
+  text +=
+      "set ylabel " + gnuplot_quoted(channel.name + " [" + channel.unit + "]") + " noenhanced\n";
   return text + plot + "\n";
 }
 
@@ -108,21 +100,8 @@ bool draw_path(StaticStudy& study, const PathResult& result, const PathScale& sc
     drawing.add(named.path);
   for (const NamedRelease& release : result.releases)
     drawing.add(release);
-  const std::string script = script_of(drawing.curves, scale, channel, title);
-  write_file(std::filesystem::path(folder) / "path.gp", script);
-  const std::string later = "path.svg was not drawn; later: cd " + folder + " && gnuplot path.gp";
-  std::FILE* pipe = ::popen("gnuplot 2>/dev/null", "w");
-  if (pipe == nullptr) {
-    console.warn(later);
-    return false;
-  }
-  const std::string text = "folder = " + quoted(folder) + "\n" + script;
-  std::fwrite(text.data(), 1, text.size(), pipe);
-  const int status = ::pclose(pipe);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  const bool absent = WIFEXITED(status) && WEXITSTATUS(status) == 127;
-  console.warn((absent ? "gnuplot is not installed, " : "gnuplot failed, ") + later);
-  return false;
+  return draw_with_gnuplot(folder, "path", script_of(drawing.curves, scale, channel, title),
+                           console);
 }
 
 }  // namespace cprsim

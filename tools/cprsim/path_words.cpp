@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/cprsim/static_words.h"
+#include "tools/cprsim/study_command.h"
 
 namespace cprsim {
 
@@ -30,31 +31,15 @@ Exit codes: 0 followed to an end; 2 usage; 3 scene; 4 no equilibrium at the star
 point was found; 5 files
 )";
 
-std::vector<Parameter> free_drives(const StaticStudy& study,
-                                   const std::vector<std::string>& names) {
-  if (names.empty()) return study.drives();
-  std::vector<Parameter> drives;
-  for (const std::string& name : names)
-    drives.push_back(study.drives()[drive_named(study, name)]);
-  return drives;
-}
-
 void check_kind(const PathWords& w) {
   const int kinds =
       (w.drives.empty() ? 0 : 1) + (w.load.empty() ? 0 : 1) + (w.pose.empty() ? 0 : 1);
-  if (kinds != 1) throw WordError("a path needs one of --drive, --load and --pose");
+  if (kinds != 1) throw UsageError("a path needs one of --drive, --load and --pose");
   const bool line =
       w.drives.size() > 1 || (w.drives.size() == 1 && w.drives[0].find('=') != std::string::npos);
   if (line && !(w.to.empty() && w.from.empty()))
-    throw WordError("--drive NAME=VALUE needs no --from and --to");
-  if (!line && w.to.empty()) throw WordError("--to is missing");
-}
-
-void start(StaticStudy& study) {
-  const SolveReport report = study.follow();
-  if (!report.converged())
-    throw PathStartError(fmt::format("no equilibrium at the start: {}, residual {:.1e} in {}",
-                                     to_string(report.status), report.residual, report.worst_row));
+    throw UsageError("--drive NAME=VALUE needs no --from and --to");
+  if (!line && w.to.empty()) throw UsageError("--to is missing");
 }
 
 PathSetup one_parameter(StaticStudy& study, const PathWords& w, const Parameter& parameter,
@@ -63,10 +48,10 @@ PathSetup one_parameter(StaticStudy& study, const PathWords& w, const Parameter&
   setup.scale = {name, parameter.unit, study.value(parameter), number_of("--to", w.to)};
   if (!w.from.empty()) setup.scale.from = number_of("--from", w.from);
   if (setup.scale.from == setup.scale.to)
-    throw WordError(fmt::format("{}: {} is at {} already", option, name, setup.scale.to));
-  start(study);
+    throw UsageError(fmt::format("{}: {} is at {} already", option, name, setup.scale.to));
+  require_equilibrium(study.follow());
   study.set(parameter, setup.scale.from);
-  start(study);
+  require_equilibrium(study.follow());
   setup.problem = along_line(study, {parameter}, VecX::Constant(1, setup.scale.from),
                              VecX::Constant(1, setup.scale.to));
   return setup;
@@ -82,8 +67,8 @@ PathSetup drive_line(StaticStudy& study, const PathWords& w) {
     from[i] = study.value(parameters.back());
     to[i] = number_of("--drive", value);
   }
-  if ((to - from).norm() == 0) throw WordError("--drive: the drives are there already");
-  start(study);
+  if ((to - from).norm() == 0) throw UsageError("--drive: the drives are there already");
+  require_equilibrium(study.follow());
   PathSetup setup;
   setup.problem = along_line(study, parameters, from, to);
   if (parameters.size() == 1)
@@ -93,17 +78,17 @@ PathSetup drive_line(StaticStudy& study, const PathWords& w) {
 
 PathSetup pose_line(StaticStudy& study, const PathWords& w) {
   const PoseGoal to = pose_goal(study.scene(), w.pose + "=" + w.to);
-  const std::vector<Parameter> drives = free_drives(study, w.free);
-  start(study);
+  const std::vector<Parameter> drives = drives_or_all(study, w.free);
+  require_equilibrium(study.follow());
   PoseGoal from = to;
   if (!w.from.empty()) {
     from = pose_goal(study.scene(), w.pose + "=" + w.from);
     if (from.asked != to.asked)
-      throw WordError("--from and --to must leave the same freedoms open");
+      throw UsageError("--from and --to must leave the same freedoms open");
     const InverseReport report =
         solve_inverse(study, drives, reach(from, study.robot().scale.length));
     if (!report.reached)
-      throw PathStartError(
+      throw NoEquilibrium(
           fmt::format("--from is not reached: {}; the largest row that remains is {:.3g}",
                       report.why, report.residual));
   } else {
@@ -115,7 +100,7 @@ PathSetup pose_line(StaticStudy& study, const PathWords& w) {
   try {
     setup.problem = along_pose(study, drives, from, to);
   } catch (const std::invalid_argument& error) {
-    throw WordError(std::string("--pose: ") + error.what() + "; choose drives with --free");
+    throw UsageError(std::string("--pose: ") + error.what() + "; choose drives with --free");
   }
   // a translation along one axis is told by its coordinate
   static constexpr const char* kNames[] = {"x", "y", "z"};
@@ -186,7 +171,7 @@ LoadWords load_words(const std::string& text) {
     return {text.substr(0, at), k == 0 ? Parameter::Kind::kForce : Parameter::Kind::kTorque,
             axis[0] - 'x'};
   }
-  throw WordError(
+  throw UsageError(
       fmt::format("--load: '{}' is not of the form NAME.force.x or NAME.torque.z", text));
 }
 
@@ -199,14 +184,14 @@ int load_at_target(const Scene& scene, const std::string& target) {
                                   ? scene.bodies[static_cast<std::size_t>(load.at.body)].name
                                   : target;
     if (name != target) continue;
-    if (found >= 0) throw WordError("--load: several loads act on " + target);
+    if (found >= 0) throw UsageError("--load: several loads act on " + target);
     found = static_cast<int>(i);
   }
   if (found >= 0) return found;
   for (const RodSpec& rod : scene.rods)
     if (rod.name == target)
-      throw WordError("--load: no load acts on the rod " + target +
-                      "; give it one in the scene, <cprsim:load at=\"...\">");
+      throw UsageError("--load: no load acts on the rod " + target +
+                       "; give it one in the scene, <cprsim:load at=\"...\">");
   return -1;
 }
 

@@ -40,14 +40,9 @@ struct PathSetup {
   PathScale scale;
 };
 
-/// Brings the study to the path's start. @throws WordError for words that mean nothing here,
-/// PathStartError where there is no equilibrium
+/// Brings the study to the path's start. @throws UsageError for words that mean nothing here,
+/// NoEquilibrium where there is no equilibrium
 PathSetup set_up(StaticStudy& study, const PathWords& words, const std::vector<Parameter>& probe);
-
-class PathStartError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// What --load names: the link or rod, "force" or "torque", component 0 to 2.
 struct LoadWords {

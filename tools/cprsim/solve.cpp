@@ -16,6 +16,7 @@
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/scene_options.h"
 #include "tools/cprsim/static_words.h"
+#include "tools/cprsim/study_command.h"
 #include "tools/sinks/output_file.h"
 
 namespace cprsim {
@@ -84,15 +85,6 @@ std::optional<int> read_words(SolveWords& w, const Words& words) {
   return parse(app, words);
 }
 
-std::vector<Parameter> free_drives(const StaticStudy& study,
-                                   const std::vector<std::string>& names) {
-  if (names.empty()) return study.drives();
-  std::vector<Parameter> drives;
-  for (const std::string& name : names)
-    drives.push_back(study.drives()[drive_named(study, name)]);
-  return drives;
-}
-
 Goal goal_of(const SolveWords& w, const StaticStudy& study) {
   std::vector<Goal> goals;
   for (const std::string& text : w.poses)
@@ -119,7 +111,7 @@ Solved solve(StaticStudy& study, const SolveWords& w, const std::vector<Paramete
   const Goal goal = goal_of(w, study);
   std::vector<Parameter> parameters = wrench;
   if (!w.poses.empty())
-    for (const Parameter& drive : free_drives(study, w.free))
+    for (const Parameter& drive : drives_or_all(study, w.free))
       parameters.push_back(drive);
   Solved solved;
   solved.report = study.solve();
@@ -251,27 +243,25 @@ Json json_of(const StaticStudy& study, const Solved& solved, const std::vector<P
 
 std::vector<Channel> channels_of(const Scene& scene, const std::vector<std::string>& patterns) {
   std::vector<Channel> all;
-  for (const std::string& pattern : patterns) {
-    const std::vector<Channel> found = find_channels(scene, pattern);
-    if (found.empty())
-      throw WordError(not_one_of(pattern, "a channel", nearest_channels(scene, pattern)));
-    all.insert(all.end(), found.begin(), found.end());
-  }
+  for (const std::string& pattern : patterns)
+    for (const Channel& channel : channels_named(scene, "--channel", pattern))
+      all.push_back(channel);
   return all;
 }
 
 int run(const SolveWords& w, const Scene& scene, const Console& console) {
   std::vector<ProbeWrench> probes;
   if (w.unknown_wrench.empty() != w.measured.empty())
-    throw WordError("--unknown-wrench and --measured go together");
+    throw UsageError("--unknown-wrench and --measured go together");
   if (!w.unknown_wrench.empty())
-    probes.push_back({frame_named(scene, w.unknown_wrench), {0, 0, 0}, {0, 0, 0}});
+    probes.push_back(
+        {frame_named(scene, "--unknown-wrench", w.unknown_wrench), {0, 0, 0}, {0, 0, 0}});
   for (const std::string& text : w.wrenches)
     probes.push_back(wrench_of(scene, text));
   const std::vector<Channel> channels = channels_of(scene, w.channels);
   StaticStudy study(scene, w.at.value_or(0), probes);
   if (!w.poses.empty() && study.drives().empty())
-    throw WordError("--pose needs drives that may change, and the scene has none");
+    throw UsageError("--pose needs drives that may change, and the scene has none");
   const std::vector<Parameter> wrench =
       w.unknown_wrench.empty() ? std::vector<Parameter>{} : study.probe(0);
   const Solved solved = solve(study, w, wrench);
@@ -295,17 +285,8 @@ int solve_command(const Words& words) {
   SolveWords w;
   if (const auto code = read_words(w, words)) return *code;
   const Console console(w.console);
-  const LoadedScene loaded = load_and_show(w.path, w.scene, console);
-  if (loaded.scene == nullptr) return kExitSceneInvalid;
-  try {
-    return run(w, *loaded.scene, console);
-  } catch (const WordError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const std::invalid_argument& error) {
-    console.error(w.path + ": " + error.what());
-    return kExitSceneInvalid;
-  }
+  return answer(w.path, w.scene, console,
+                [&](const Scene& scene) { return run(w, scene, console); });
 }
 
 }  // namespace cprsim

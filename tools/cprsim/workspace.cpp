@@ -14,6 +14,7 @@
 #include "tools/cprsim/output_folder.h"
 #include "tools/cprsim/progress.h"
 #include "tools/cprsim/stopwatch.h"
+#include "tools/cprsim/study_command.h"
 #include "tools/cprsim/workspace_outputs.h"
 #include "tools/cprsim/workspace_table.h"
 #include "tools/sinks/output_file.h"
@@ -153,12 +154,10 @@ int workspace_command(const Words& words) {
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const WorkspaceOptions& options = std::get<WorkspaceOptions>(parsed);
   const Console console(options.console);
-  const LoadedScene loaded = load_and_show(options.path, options.scene, console);
-  if (loaded.scene == nullptr) return kExitSceneInvalid;
-  try {
-    const WorkspaceTask task = make_task(*loaded.scene, options);
+  return answer(options.path, options.scene, console, [&](const Scene& scene) {
+    const WorkspaceTask task = make_task(scene, options);
     WorkspaceReport report;
-    report.label = label_of(options.path, *loaded.scene);
+    report.label = label_of(options.path, scene);
     report.scene_path = options.path;
     report.options = options.given();
     report.jobs = options.jobs > 0
@@ -166,13 +165,7 @@ int workspace_command(const Words& words) {
                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const fs::path folder = choose_output_folder(options.output, report.label + "_workspace");
     return sweep_into(folder, task, options, console, report);
-  } catch (const UsageError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const std::invalid_argument& error) {
-    console.error(options.path + ": " + error.what());
-    return kExitSceneInvalid;
-  }
+  });
 }
 
 }  // namespace cprsim

@@ -49,12 +49,6 @@ struct WorkspaceOptions {
 /// The options, or the exit code with which parsing ended.
 std::variant<WorkspaceOptions, int> parse_workspace_options(const Words& words);
 
-/// The options make no sense for this scene: exit code 2.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// A question that can be answered.
 struct WorkspaceTask {
   Scene scene;  ///< with the drives that were added

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/model/channel.h"
+#include "tools/cprsim/static_words.h"
 #include "tools/cprsim/workspace_options.h"
 
 namespace cprsim {
@@ -94,19 +95,6 @@ bool add_length_drives(Scene& scene, const std::string& pattern) {
     list += "\n  " + each;
   throw UsageError(option + ": " + not_one_of(name, "a drive or a rod", names) +
                    "\nThere are:" + list);
-}
-
-FrameRef frame_named(const Scene& scene, const std::string& option, const std::string& name) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    if (scene.bodies[i].name == name) return {static_cast<int>(i), Pose{}};
-    names.push_back(scene.bodies[i].name);
-  }
-  for (const NamedFrame& frame : scene.frames) {
-    if (frame.name == name) return frame.at;
-    names.push_back(frame.name);
-  }
-  throw UsageError(option + ": " + not_one_of(name, "a link or frame", names));
 }
 
 /// The link that the tips of most rods hold.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/so3.h"
+#include "tests/engine/robot/direction_error.h"
 #include "tests/engine/robot/sample_scenes.h"
 #include "tests/support/planar_robots.h"
 
@@ -74,21 +75,7 @@ double slope_error(const Scene& scene, const Setting& setting, unsigned seed) {
   if (setting.softness > 0) equations.set_softness(setting.softness);
   equations.set_instant(0, true, rates);  // now that there are states, segments are cut
   disturb_in_plane(robot, equations, numbers, 0.05);
-  const double merit = equations.evaluate().merit;
-  if (!equations.find_direction(0)) return 1;
-  equations.keep();
-  const auto merit_at = [&](double alpha) {
-    equations.move(alpha);
-    return equations.evaluate().merit;
-  };
-  // directions are anything between 1 and 1e10 long: the difference that fits best
-  double error = 1;
-  for (double a = 1e-2; a > 1e-13; a *= 0.1) {
-    const double slope =
-        (8 * (merit_at(a) - merit_at(-a)) - (merit_at(2 * a) - merit_at(-2 * a))) / (12 * a);
-    error = std::min(error, std::abs(slope / (-2 * merit) - 1));
-  }
-  return error;
+  return direction_error(equations);
 }
 
 // fourth-order differences reach 1e-9 and better; round-off of stiff inertia is most of that

@@ -14,21 +14,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// The published robot with a length drive on every leg.
-Scene driven_robot(const std::vector<double>& lengths) {
-  Scene scene = stewart_gough(lengths, false);
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    DriveSpec drive;
-    drive.quantity = DriveQuantity::kLength;
-    drive.rod = static_cast<int>(i);
-    ProfileTerm term;
-    term.value = lengths[i];
-    drive.profile.terms.push_back(term);
-    scene.drives.push_back(drive);
-  }
-  return scene;
-}
-
 PoseGoal platform_at(const Vec3& position, const Vec3& angles) {
   PoseGoal goal;
   goal.at.body = 0;
@@ -38,7 +23,7 @@ PoseGoal platform_at(const Vec3& position, const Vec3& angles) {
 }
 
 TEST(Inverse, FindsTheLegLengthsOfThePublishedPose) {
-  StaticStudy study(driven_robot(std::vector<double>(6, 0.4)));
+  StaticStudy study(stewart_gough_driven(std::vector<double>(6, 0.4)));
   ASSERT_TRUE(study.solve().converged());
   const InverseReport report = solve_inverse(
       study, study.drives(), reach(platform_at({0, 0, 0.4}, {0, 10 * kDegree, 0}), 0.4));
@@ -55,10 +40,10 @@ TEST(Inverse, FindsTheLegLengthsOfThePublishedPose) {
 }
 
 TEST(Inverse, ForwardUndoesInverse) {
-  StaticStudy study(driven_robot(std::vector<double>(6, 0.4)));
+  StaticStudy study(stewart_gough_driven(std::vector<double>(6, 0.4)));
   ASSERT_TRUE(study.solve().converged());
   const StaticStudy::State home = study.state();
-  StaticStudy forward(driven_robot(std::vector<double>(6, 0.4)));
+  StaticStudy forward(stewart_gough_driven(std::vector<double>(6, 0.4)));
   std::mt19937 random(7);
   const auto uniform = [&](double size) {
     return size * (2 * (static_cast<double>(random()) / 4294967296.0) - 1);
@@ -85,7 +70,7 @@ TEST(Inverse, ForwardUndoesInverse) {
 }
 
 TEST(Inverse, EstimatesTheWrenchThatItWasGiven) {
-  Scene scene = driven_robot({0.40, 0.41, 0.405, 0.40, 0.395, 0.41});
+  Scene scene = stewart_gough_driven({0.40, 0.41, 0.405, 0.40, 0.395, 0.41});
   const Vec3 force(0.4, -0.3, 0.5), torque(0.01, 0.02, -0.005);
   ProbeWrench wrench;
   wrench.at.body = 0;
@@ -109,7 +94,7 @@ TEST(Inverse, EstimatesTheWrenchThatItWasGiven) {
 }
 
 TEST(Inverse, UsesOnlyTheFreedomsThatAreAsked) {
-  StaticStudy study(driven_robot(std::vector<double>(6, 0.4)));
+  StaticStudy study(stewart_gough_driven(std::vector<double>(6, 0.4)));
   ASSERT_TRUE(study.solve().converged());
   PoseGoal goal = platform_at({0.01, 0, 0.392}, Vec3::Zero());
   goal.asked = {true, true, true, false, false, false};
@@ -121,7 +106,7 @@ TEST(Inverse, UsesOnlyTheFreedomsThatAreAsked) {
 }
 
 TEST(Inverse, SaysThatAPoseIsOutOfReach) {
-  StaticStudy study(driven_robot(std::vector<double>(6, 0.4)));
+  StaticStudy study(stewart_gough_driven(std::vector<double>(6, 0.4)));
   ASSERT_TRUE(study.solve().converged());
   // one leg cannot place a platform held by five others
   const InverseReport report = solve_inverse(study, {study.drives()[0]},
@@ -132,7 +117,7 @@ TEST(Inverse, SaysThatAPoseIsOutOfReach) {
 }
 
 TEST(Inverse, JacobianIsTheDerivativeOfSolvedEquilibria) {
-  StaticStudy study(driven_robot({0.40, 0.41, 0.405, 0.40, 0.395, 0.41}));
+  StaticStudy study(stewart_gough_driven({0.40, 0.41, 0.405, 0.40, 0.395, 0.41}));
   ASSERT_TRUE(study.solve().converged());
   const Goal goal = reach(platform_at(Vec3::Zero(), Vec3::Zero()), 0.4);
   const VecX units = parameter_units(study, study.drives());

@@ -13,28 +13,8 @@ namespace {
 constexpr double kLength = 0.4, kRadius = 0.001;
 constexpr double kPi = std::numbers::pi;
 
-/// A rod along z whose tip is held by a body that slides on z, pressed by a force.
 Scene column(EndJoint base, EndJoint tip) {
-  Scene scene;
-  RodSpec rod = steel_rod(kLength, kRadius);
-  rod.base.joint = base;
-  rod.tip.joint = tip;
-  rod.tip.at = {0, Pose{}};
-  scene.rods.push_back(rod);
-  BodySpec slider;
-  slider.name = "slider";
-  slider.X_WB.p = {0, 0, kLength};
-  scene.bodies.push_back(slider);
-  JointSpec rail;
-  rail.name = "rail";
-  rail.kind = JointKind::kPrismatic;
-  rail.child = 0;
-  rail.X_PJ.p = {0, 0, kLength};
-  scene.joints.push_back(rail);
-  LoadSpec load;
-  load.at.body = 0;
-  load.force = {0, 0, -1};
-  scene.loads.push_back(load);
+  Scene scene = column(kLength, kRadius, base, tip, 1);
   scene.solver.points = 16;
   return scene;
 }

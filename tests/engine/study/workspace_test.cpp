@@ -10,21 +10,6 @@
 namespace cprsim {
 namespace {
 
-/// The published robot with a length drive on every leg.
-Scene driven_robot(const std::vector<double>& lengths) {
-  Scene scene = stewart_gough(lengths, false);
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    DriveSpec drive;
-    drive.quantity = DriveQuantity::kLength;
-    drive.rod = static_cast<int>(i);
-    ProfileTerm term;
-    term.value = lengths[i];
-    drive.profile.terms.push_back(term);
-    scene.drives.push_back(drive);
-  }
-  return scene;
-}
-
 WorkspaceAxis axis(int drive, double low, double high, int count) {
   WorkspaceAxis a;
   a.name = "drive " + std::to_string(drive);
@@ -65,7 +50,7 @@ TEST(Workspace, RandomPointsFillTheBoxAndDependOnTheSeedAlone) {
 
 // What a drive exerts is what the potential energy of the whole robot costs per unit of its motion.
 TEST(Workspace, EffortsAreDerivativesOfEnergy) {
-  Scene scene = driven_robot({0.40, 0.41, 0.405, 0.40, 0.395, 0.41});
+  Scene scene = stewart_gough_driven({0.40, 0.41, 0.405, 0.40, 0.395, 0.41});
   scene.solver.accuracy = 1e-10;  // energies are sums over points, forces are not
   StaticStudy study(scene);
   ASSERT_TRUE(study.solve().converged());
@@ -95,7 +80,7 @@ TEST(Workspace, EffortsAreDerivativesOfEnergy) {
 }
 
 TEST(Workspace, AnswersDoNotDependOnEarlierPointsOrThreads) {
-  const Scene scene = driven_robot(std::vector<double>(6, 0.4));
+  const Scene scene = stewart_gough_driven(std::vector<double>(6, 0.4));
   WorkspaceQuestion question;
   question.poses = true;
   question.frame.body = 0;
@@ -122,7 +107,7 @@ TEST(Workspace, AnswersDoNotDependOnEarlierPointsOrThreads) {
 }
 
 TEST(Workspace, StopsWhenToldSo) {
-  const Scene scene = driven_robot(std::vector<double>(6, 0.4));
+  const Scene scene = stewart_gough_driven(std::vector<double>(6, 0.4));
   WorkspaceQuestion question;
   question.frame.body = 0;
   question.axes = {axis(0, 0.39, 0.41, 20)};
@@ -149,7 +134,7 @@ TEST(Workspace, LegsOfVeryUnequalLengthsAreBroughtTogether) {
        0.43738135695154323, 0.45469607487090025}};
   int harder = 0;
   for (const std::vector<double>& each : lengths) {
-    Scene scene = driven_robot(each);
+    Scene scene = stewart_gough_driven(each);
     scene.solver.accuracy = 1e-10;
     StaticStudy study(scene);
     const SolveReport report = study.solve();

@@ -7,27 +7,10 @@
 
 #include "engine/math/so3.h"
 #include "engine/robot/body.h"
+#include "tests/engine/time/schemes.h"
 
 namespace cprsim {
 namespace {
-
-constexpr SchemeKind kAll[] = {SchemeKind::kBackwardEuler, SchemeKind::kBdf2,
-                               SchemeKind::kBdfAlpha,      SchemeKind::kGeneralizedAlpha,
-                               SchemeKind::kTrBdf2,        SchemeKind::kEsdirk32,
-                               SchemeKind::kEsdirk43};
-
-int order_of(SchemeKind kind) {
-  switch (kind) {
-    case SchemeKind::kBackwardEuler:
-      return 1;
-    case SchemeKind::kEsdirk32:
-      return 3;
-    case SchemeKind::kEsdirk43:
-      return 4;
-    default:
-      return 2;
-  }
-}
 
 RigidBody top(const Vec3& omega) {
   RigidBody body;
@@ -106,7 +89,7 @@ Reference reference_top(const Vec3& omega0, double time) {
 const Vec3 kTumble(0.6, 1.9, 0.8);  // near the unstable middle axis
 
 TEST(FreeTop, SpinAboutAPrincipalAxisIsExact) {
-  for (SchemeKind kind : kAll)
+  for (SchemeKind kind : kAllSchemes)
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 omega = 2.5 * Vec3::Unit(axis);
       const RigidBody body = spun(kind, omega, 3, 20);  // more than a turn
@@ -119,7 +102,7 @@ TEST(FreeTop, SpinAboutAPrincipalAxisIsExact) {
 
 TEST(FreeTop, ConvergesWithTheOrderOfItsScheme) {
   const Reference exact = reference_top(kTumble, 2);
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     const auto error = [&](int steps) {
       const RigidBody body = spun(kind, kTumble, 2, steps);
       return std::hypot((body.R - exact.R).norm(), (body.omega - exact.omega).norm());
@@ -133,7 +116,7 @@ TEST(FreeTop, ConvergesWithTheOrderOfItsScheme) {
 TEST(FreeTop, EnergyAndMomentumConvergeLikewise) {
   const auto momentum = [](const RigidBody& b) -> Vec3 { return b.R * (b.inertia * b.omega); };
   const RigidBody start = top(kTumble);
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     double energy_error[2], momentum_error[2];
     for (int k = 0; k < 2; ++k) {
       const RigidBody body = spun(kind, kTumble, 2, (1 + k) * steps_for(kind));
@@ -149,7 +132,7 @@ TEST(FreeTop, EnergyAndMomentumConvergeLikewise) {
 }
 
 TEST(FreeTop, CentreOfMassGoesStraight) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     const RigidBody body = spun(kind, kTumble, 2, 40);
     EXPECT_LT((body.p - 2 * Vec3(0.1, 0.2, 0.3)).norm(), 1e-13) << to_string(kind);  // round-off
   }

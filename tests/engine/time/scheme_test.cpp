@@ -8,26 +8,10 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/engine/time/schemes.h"
+
 namespace cprsim {
 namespace {
-
-constexpr SchemeKind kAll[] = {SchemeKind::kBackwardEuler, SchemeKind::kBdf2,
-                               SchemeKind::kBdfAlpha,      SchemeKind::kGeneralizedAlpha,
-                               SchemeKind::kTrBdf2,        SchemeKind::kEsdirk32,
-                               SchemeKind::kEsdirk43};
-
-int order_of(SchemeKind kind) {
-  switch (kind) {
-    case SchemeKind::kBackwardEuler:
-      return 1;
-    case SchemeKind::kEsdirk32:
-      return 3;
-    case SchemeKind::kEsdirk43:
-      return 4;
-    default:
-      return 2;
-  }
-}
 
 class Oscillator {
  public:
@@ -89,13 +73,13 @@ double observed_order(SchemeKind kind, double ratio) {
 }
 
 TEST(Stepper, HasItsSchemesOrderFromTheFirstStep) {
-  for (SchemeKind kind : kAll)
+  for (SchemeKind kind : kAllSchemes)
     // at 160 steps a period of 2.1 the next term is a few percent of the error
     EXPECT_NEAR(observed_order(kind, 1), order_of(kind), 0.06) << to_string(kind);
 }
 
 TEST(Stepper, KeepsItsOrderWhenStepsAlternate) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     if (kind == SchemeKind::kGeneralizedAlpha) continue;  // see the next test
     EXPECT_GT(observed_order(kind, 0.5), order_of(kind) - 0.1) << to_string(kind);
   }
@@ -108,7 +92,7 @@ TEST(Stepper, GeneralizedAlphaLosesAnOrderWhenStepsAlternate) {
 }
 
 TEST(Stepper, FirstStepIsOfTheStartersOrder) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     if (kind == SchemeKind::kBackwardEuler) continue;
     const auto error = [&](double h) {
       Oscillator o(kind, kW, 1, 0.5);
@@ -125,7 +109,7 @@ TEST(Stepper, FirstStepIsOfTheStartersOrder) {
 }
 
 TEST(Stepper, FreeFallIsExactFromSecondOrderOn) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     Oscillator o(kind, 0, 0.3, -0.2);
     for (int i = 0; i < 20; ++i)
       o.step(i % 3 == 0 ? 0.03 : 0.05, [](double) { return -9.81; });
@@ -157,7 +141,7 @@ TEST(Stepper, ErrorEstimateFallsWithTheEmbeddedOrder) {
 }
 
 TEST(Stepper, IntegralOverAStepIsExactForWhatItsOrderCovers) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     Oscillator o(kind, 1, 1, 0);
     o.step(0.1);
     const std::vector<Track*> tracks{&o.track};
@@ -203,7 +187,7 @@ TEST(GeneralizedAlpha, DampsTheStiffestModesByRhoInfinity) {
 
 // Exactly but for round-off: v comes from differences of x over h, 1e-16 / 0.003 a stage.
 TEST(Stepper, JumpOfVelocityIsKeptExactly) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     Oscillator o(kind, 0, 0, 0);
     for (int i = 0; i < 5; ++i)
       o.step(0.01);
@@ -218,7 +202,7 @@ TEST(Stepper, JumpOfVelocityIsKeptExactly) {
 
 // 4 N for 2 ms on 1 kg, both edges known to the stepper.
 TEST(Stepper, PulseOfForceGivesItsMomentum) {
-  for (SchemeKind kind : kAll) {
+  for (SchemeKind kind : kAllSchemes) {
     Oscillator o(kind, 0, 0, 0);
     const auto run = [&](double f, int steps) {
       o.stepper.reset();
