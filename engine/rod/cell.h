@@ -60,9 +60,11 @@ struct CellStage {
 
 /// Sensitivities travel in blocks of columns: rows phi, p, n, m (world axes; phi the rotation
 /// increment), row-major 12 × columns. Columns 0..5 belong to the unknowns at the segment's
-/// start; 6..11 (only when 16) to the motion of the base body; then one affine column, and padding.
+/// start; 6..11 (only when 16) to the motion of the base body; then one affine column; the rest is
+/// padding, or a contact's force.
 constexpr int kNarrow = 8, kWide = 16;
-constexpr int kMaxLifted = 24;  ///< 6 per stage
+constexpr int kContactColumn = 13;  ///< of wide blocks: the force of a contact in the cell
+constexpr int kMaxLifted = 24;      ///< 6 per stage
 
 struct CellKernel {
   int lifted;  ///< unknowns per cell

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/math/types.h"
+#include "engine/rod/contact.h"
 #include "engine/rod/field.h"
 #include "engine/rod/rod_end.h"
 #include "engine/rod/shape.h"
@@ -121,6 +122,7 @@ class RodModel {
     VecX values;
     std::vector<NodeState> starts;
     std::vector<NodeState> nodes;  ///< as last reached: where segments may be cut differently
+    std::vector<RodContact> contacts;
   };
 
   virtual Unknowns unknowns() const = 0;
@@ -134,6 +136,9 @@ class RodModel {
   virtual RodField field() const = 0;
   virtual RodEnergy energy() const = 0;
   virtual std::string row_name(int row) const = 0;
+
+  /// The side that touches obstacles; null where the discretisation has none.
+  virtual TouchingRod* touching() { return nullptr; }
 
   virtual int cells() const = 0;
   virtual int segments() const = 0;

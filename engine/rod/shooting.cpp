@@ -220,6 +220,7 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
 
   NodeState state = starts_.front();
   apply_load(0, state);
+  if (touch_) close_contacts(0, state);
   nodes_[0] = state;
   for (std::size_t g = 0; g + 1 < segment_first_.size(); ++g) {
     if (g > 0) {
@@ -235,10 +236,12 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
       state = start;
     }
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
-      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+      model_.h = cell_length(c);
       NodeState end;
+      if (const RodContact* inside = contact_in(c)) add_contact_force(*inside, 0, state);
       kernel_->evaluate(model_, &stages_[c * S], state, end);
       apply_load(c + 1, end);
+      if (touch_) close_contacts(c + 1, end);
       nodes_[c + 1] = state = end;
     }
   }
@@ -251,6 +254,7 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
         add_row(r, v / noise_, row++);
   }
   add(tip_.value(state, tip, loose) - tip_gap_);
+  if (touch_) contact_residual(r, row);
   evaluated_ = r.finite;
   return r;
 }
@@ -268,11 +272,13 @@ std::string ShootingRod::row_name(int row) const {
     return "strain law of " + name_ + " in cell " + std::to_string(cell + 1) + " of " +
            std::to_string(cells_);
   }
-  return std::string("tip of ") + name_ + ", " + tip_.row_name(row - law);
+  row -= law;
+  if (row < 6) return std::string("tip of ") + name_ + ", " + tip_.row_name(row);
+  return "contact " + std::to_string((row - 6) / 3 + 1) + " of " + name_;
 }
 
 int ShootingRod::unknown_count() const {
-  return 12 * segments() +
+  return 12 * segments() + 3 * static_cast<int>(contact_count()) +
          static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 6 : 3);
 }
 

@@ -10,6 +10,9 @@
 // unknowns of earlier segments follow from later ones by triangular back-substitution, in which
 // growing modes decay. Segments are so many that none amplifies more than e^6.
 //
+// A contact brings an unknown force and three rows, which determine it and leave six columns again:
+// the same recombination, without a segment's start (engine/rod/shooting_contact.cpp).
+//
 // The grid of cells does not follow the time step: Gauss collocation is symmetric, so growing and
 // decaying solutions stay apart on any grid.
 //
@@ -20,6 +23,7 @@
 
 #include <memory>
 
+#include "engine/rod/contact.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/section.h"
 
@@ -38,7 +42,7 @@ struct ShootingOptions {
 double growth_exponent(const SectionProperties& section, const Vec3& K_bt, const Vec3& K_se,
                        double length, double k, double N);
 
-class ShootingRod final : public RodModel {
+class ShootingRod final : public RodModel, public TouchingRod {
  public:
   ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip,
               const SectionProperties& section, double length, const ShootingOptions& options);
@@ -88,6 +92,17 @@ class ShootingRod final : public RodModel {
 
   double growth_exponent() const override { return growth_; }
 
+  TouchingRod* touching() override { return this; }
+
+  const std::vector<NodeState>& contact_nodes() const override { return nodes_; }
+
+  const std::vector<double>& contact_grid() const override { return grid_; }
+
+  void set_surfaces(const std::vector<Surface>& surfaces, double radius, bool friction) override;
+  std::vector<RodContact>& contacts() override;
+  const std::vector<ContactRows>& contact_state() const override;
+  void accept_contacts() override;
+
   /// State at node k (after any load there); base state before it. For tests and observation.
   const NodeState& node(int k) const { return nodes_[static_cast<std::size_t>(k)]; }
 
@@ -102,13 +117,35 @@ class ShootingRod final : public RodModel {
   void apply_load_columns(std::size_t node, const NodeState& state, double* Y) const;
   void start_columns(const Port& base, double* Y) const;
   bool sweep_columns(const Port& base);
-  void orthonormalize(std::size_t segment, const NodeState& reached, double* Y);
+  void cut_zones();
+  bool cross_boundary(std::size_t zone, double* Y);
+  void orthonormalize(std::size_t zone, const Vec12& mismatch, double* Y);
   void close_tip(const Port& tip, const double* Y, CondensedRod& out) const;
   void close_base(const Port& base, CondensedRod& out) const;
   RodResidual& add_row(RodResidual& r, double value, int row) const;
   Vec3 compliance_bt() const;
   Vec3 compliance_se() const;
   void update_stage_inputs();
+
+  // contact
+  const NodeState& cell_state(std::size_t cell) const;
+  const RodContact* contact_in(std::size_t cell) const;
+
+  double cell_length(std::size_t cell) const {
+    return (grid_[cell + 1] - grid_[cell]) * forcing_.length;
+  }
+
+  void add_contact_force(const RodContact& contact, int end, NodeState& state) const;
+  void close_contacts(std::size_t node, NodeState& state) const;
+  void contact_residual(RodResidual& r, int& row);
+  void fill_contact_tracks();
+  ContactNode contact_node(const NodeState& state, std::size_t node) const;
+  void add_force_columns(const RodContact& contact, int end, const NodeState& state,
+                         double* Y) const;
+  void open_contact_columns(std::size_t cell, double* Y);
+  bool meet_contact(std::size_t contact, std::size_t zone, double* Y);
+
+  std::size_t contact_count() const { return touch_ ? touch_->contacts.size() : 0; }
 
   std::size_t stage_count() const { return stages_.size(); }
 
@@ -146,12 +183,35 @@ class ShootingRod final : public RodModel {
 
   // linearisation
   int columns_ = kNarrow;
-  std::vector<Columns> segment_start_columns_;
+  std::vector<Columns> zone_start_columns_;
   Columns cell_directions_;  ///< lifted × columns per cell
 
+  /// Where the columns are recombined: at a segment's start or where a contact's rows are met.
+  /// Zones lie between boundaries.
+  struct Boundary {
+    std::size_t node = 0;
+    int segment = -1, contact = -1;
+  };
+
+  std::vector<Boundary> boundaries_;
+
+  std::size_t zone_first(std::size_t zone) const {
+    return zone == 0 ? 0 : boundaries_[zone - 1].node;
+  }
+
+  std::size_t zone_end(std::size_t zone) const {
+    return zone < boundaries_.size() ? boundaries_[zone].node : static_cast<std::size_t>(cells_);
+  }
+
+  /// z' = R z + G_A zeta_A + g. Where a contact is met first, z = N z_met + P_A zeta_A + p, and its
+  /// force moves by F z_met + F_A zeta_A + f.
   struct Recombination {
     Mat6 R, G_A;
     Vec6 g;
+    Mat6 N, P_A;
+    Vec6 p;
+    Eigen::Matrix<double, 3, 6> F, F_A;
+    Vec3 f;
   };
 
   std::vector<Recombination> recombinations_;
@@ -167,6 +227,22 @@ class ShootingRod final : public RodModel {
   Track rotation_track_{Track::Kind::kRotation};
   std::vector<double> reference_rotations_;  ///< 9 per stage
   long section_evaluations_ = 0;
+
+  /// Only in a rod that may touch something.
+  struct Touch {
+    std::vector<Surface> surfaces;
+    double radius = 0;
+    bool friction = false;
+    std::vector<RodContact> contacts;
+    std::vector<ContactRows> rows;
+    std::vector<NodeState> accepted;      ///< nodes from which slip counts without rates
+    Track turns{Track::Kind::kRotation};  ///< of the nodes, with friction
+    std::vector<Mat3> references;
+    Columns opened;  ///< columns at the start of a cell with a contact
+    std::vector<Vec3> kept, direction;
+  };
+
+  std::unique_ptr<Touch> touch_;
 };
 
 }  // namespace cprsim

@@ -81,28 +81,25 @@ void ShootingRod::apply_load_columns(std::size_t node, const NodeState& state, d
   }
 }
 
-// At a segment's end: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are
-// z' = R z + G_A zeta_A + g, and the particular columns keep only what is orthogonal to Q. Turning
-// is joined by log(R_reached R_start^T) = e = 0, hence phi_start = exp(-e) (phi_reached + e).
-void ShootingRod::orthonormalize(std::size_t segment, const NodeState& reached, double* Y0) {
+// At a boundary: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are z' = R z
+// + G_A zeta_A + g, and the particular columns keep only what is orthogonal to Q. Turning is joined
+// by log(R_reached R_start^T) = e = 0, hence phi_start = exp(-e) (phi_reached + e).
+void ShootingRod::orthonormalize(std::size_t zone, const Vec12& mismatch, double* Y0) {
   ColumnsMap Y(Y0, 12, columns_);
   const int affine = affine_column(columns_);
-  const NodeState& start = starts_[segment + 1];
-  Vec12 mismatch;
-  mismatch << log_so3(rotation_of(reached) * rotation_of(start).transpose()),
-      position_of(reached) - position_of(start), force_of(reached) - force_of(start),
-      moment_of(reached) - moment_of(start);
-  Y.col(affine) += mismatch;
-  const Mat3 back = exp_so3(-mismatch.head<3>());
-  for (int c = 0; c < columns_; ++c)
-    Y.col(c).head<3>() = (back * Y.col(c).head<3>()).eval();
+  if (!mismatch.isZero(0)) {
+    Y.col(affine) += mismatch;
+    const Mat3 back = exp_so3(-mismatch.head<3>());
+    for (int c = 0; c < columns_; ++c)
+      Y.col(c).head<3>() = (back * Y.col(c).head<3>()).eval();
+  }
   const Vec12 d = state_units(port_scale_);
   const Vec12 per_unit = d.cwiseInverse();
   const Mat12x6 Y_z = per_unit.asDiagonal() * Mat12x6(Y.leftCols<6>());
   transition_ = std::max(transition_, Y_z.cwiseAbs().maxCoeff());
   const TallQr qr(Y_z);
   const Mat6x12 Qt = qr.Q1.transpose();
-  Recombination& rec = recombinations_[segment];
+  Recombination& rec = recombinations_[zone];
   rec.R = qr.R;
   Vec12 y = per_unit.cwiseProduct(Vec12(Y.col(affine)));
   rec.g = Qt * y;
@@ -118,40 +115,68 @@ void ShootingRod::orthonormalize(std::size_t segment, const NodeState& reached, 
   Y.leftCols<6>() = d.asDiagonal() * qr.Q1;
 }
 
+void ShootingRod::cut_zones() {
+  boundaries_.clear();
+  std::size_t contact = 0, segment = 1;
+  for (std::size_t node = 0; node <= static_cast<std::size_t>(cells_); ++node) {
+    for (; contact < contact_count() && touch_->contacts[contact].closing_node() == node; ++contact)
+      boundaries_.push_back({node, -1, static_cast<int>(contact)});
+    if (segment + 1 < segment_first_.size() && segment_first_[segment] == node)
+      boundaries_.push_back({node, static_cast<int>(segment++), -1});
+  }
+}
+
+bool ShootingRod::cross_boundary(std::size_t zone, double* Y) {
+  const Boundary& boundary = boundaries_[zone];
+  Vec12 mismatch = Vec12::Zero();
+  if (boundary.contact >= 0) {
+    if (!meet_contact(static_cast<std::size_t>(boundary.contact), zone, Y)) return false;
+  } else {
+    const NodeState& reached = nodes_[boundary.node];
+    const NodeState& start = starts_[static_cast<std::size_t>(boundary.segment)];
+    mismatch << log_so3(rotation_of(reached) * rotation_of(start).transpose()),
+        position_of(reached) - position_of(start), force_of(reached) - force_of(start),
+        moment_of(reached) - moment_of(start);
+  }
+  orthonormalize(zone, mismatch, Y);
+  return true;
+}
+
 bool ShootingRod::sweep_columns(const Port& base) {
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto width = static_cast<std::size_t>(columns_);
-  const auto M = static_cast<std::size_t>(segments());
   const auto linearize = columns_ == kNarrow ? kernel_->linearize_narrow : kernel_->linearize_wide;
-  segment_start_columns_.resize(M);
-  recombinations_.resize(M);
+  cut_zones();
+  const std::size_t zones = boundaries_.size() + 1;
+  zone_start_columns_.resize(zones);
+  recombinations_.resize(zones);
   cell_directions_.resize(static_cast<std::size_t>(cells_) * lifted * width);
   transition_ = 0;
   alignas(64) double Y[12 * kWide];
   start_columns(base, Y);
-  for (std::size_t g = 0; g < M; ++g) {
-    segment_start_columns_[g].assign(Y, Y + 12 * width);
+  for (std::size_t g = 0; g < zones; ++g) {
+    zone_start_columns_[g].assign(Y, Y + 12 * width);
     if (g == 0) apply_load_columns(0, starts_.front(), Y);
-    for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
-      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
-      const NodeState& start = g > 0 && c == segment_first_[g] ? starts_[g] : nodes_[c];
-      if (!linearize(model_, &stages_[c * S], start, nodes_[c + 1], Y,
+    for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
+      model_.h = cell_length(c);
+      if (contact_in(c)) open_contact_columns(c, Y);
+      if (!linearize(model_, &stages_[c * S], cell_state(c), nodes_[c + 1], Y,
                      &cell_directions_[c * lifted * width]))
         return false;
       apply_load_columns(c + 1, nodes_[c + 1], Y);
     }
-    if (g + 1 < M) orthonormalize(g, nodes_[segment_first_[g + 1]], Y);
+    if (g + 1 < zones && !cross_boundary(g, Y)) return false;
   }
-  // the last segment's columns are left behind the starts
-  segment_start_columns_.emplace_back(Y, Y + 12 * width);
+  // the last zone's columns are left behind the starts
+  zone_start_columns_.emplace_back(Y, Y + 12 * width);
   return true;
 }
 
 bool ShootingRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
-  columns_ = base.moves ? kWide : kNarrow;
+  columns_ = base.moves || contact_count() > 0 ? kWide : kNarrow;
   if (!sweep_columns(base)) return false;
-  close_tip(tip, segment_start_columns_.back().data(), out);
+  close_tip(tip, zone_start_columns_.back().data(), out);
   close_base(base, out);
   out.growth = transition_;
   return true;
@@ -197,16 +222,20 @@ void ShootingRod::close_base(const Port& base, CondensedRod& out) const {
   if (!base_.held() || !base.moves) return;
   Mat6 Z = Mat6::Identity(), Z_A = Mat6::Zero();
   Vec6 z0 = Vec6::Zero();
-  for (int g = segments() - 2; g >= 0; --g) {
-    const Recombination& rec = recombinations_[static_cast<std::size_t>(g)];
+  for (std::size_t g = boundaries_.size(); g-- > 0;) {
+    const Recombination& rec = recombinations_[g];
     const auto R = rec.R.triangularView<Eigen::Upper>();
     Z_A -= rec.G_A;
     z0 -= rec.g;
     R.solveInPlace(Z);
     R.solveInPlace(Z_A);
     R.solveInPlace(z0);
+    if (boundaries_[g].contact < 0) continue;
+    Z = (rec.N * Z).eval();
+    Z_A = (rec.N * Z_A + rec.P_A).eval();
+    z0 = (rec.N * z0 + rec.p).eval();
   }
-  const ConstColumnsMap Y(segment_start_columns_.front().data(), 12, columns_);
+  const ConstColumnsMap Y(zone_start_columns_.front().data(), 12, columns_);
   const NodeState& start = starts_.front();
   const Vec3 n = force_of(start);
   const Vec3 r = position_of(start) - base.p + base.arm;
@@ -241,25 +270,34 @@ Vec6 ShootingRod::wrench_on_tip(const Port& tip) const {
 }
 
 void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
-  const auto M = static_cast<std::size_t>(segments());
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto width = static_cast<std::size_t>(columns_);
   const int affine = affine_column(columns_);
-  start_direction_.resize(M);
+  start_direction_.resize(starts_.size());
   lifted_direction_.resize(static_cast<std::size_t>(cells_) * lifted);
+  if (touch_) touch_->direction.resize(contact_count());
   Vec6 z_g = z;
   VecX weights = VecX::Zero(columns_);
-  for (std::size_t g = M; g-- > 0;) {
-    if (g + 1 < M) {
+  if (columns_ == kWide) weights.segment<6>(6) = zeta_A;
+  weights[affine] = 1;
+  for (std::size_t g = boundaries_.size() + 1; g-- > 0;) {
+    if (g < boundaries_.size()) {
       const Recombination& rec = recombinations_[g];
       z_g -= rec.G_A * zeta_A + rec.g;
       rec.R.triangularView<Eigen::Upper>().solveInPlace(z_g);
+      if (boundaries_[g].contact >= 0) {
+        const Vec3 df = rec.F * z_g + rec.F_A * zeta_A + rec.f;
+        touch_->direction[static_cast<std::size_t>(boundaries_[g].contact)] = df;
+        weights.segment<3>(kContactColumn) = df / port_scale_.force;
+        z_g = (rec.N * z_g + rec.P_A * zeta_A + rec.p).eval();
+      }
     }
     weights.head<6>() = z_g;
-    if (columns_ == kWide) weights.segment<6>(6) = zeta_A;
-    weights[affine] = 1;
-    start_direction_[g] = ConstColumnsMap(segment_start_columns_[g].data(), 12, columns_) * weights;
-    for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
+    const int segment = g == 0 ? 0 : boundaries_[g - 1].segment;
+    if (segment >= 0)
+      start_direction_[static_cast<std::size_t>(segment)] =
+          ConstColumnsMap(zone_start_columns_[g].data(), 12, columns_) * weights;
+    for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
       const double* D = &cell_directions_[c * lifted * width];
       for (std::size_t i = 0; i < lifted; ++i) {
         double sum = 0;
@@ -273,6 +311,11 @@ void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
 
 void ShootingRod::keep() {
   kept_starts_ = starts_;
+  if (touch_) {
+    touch_->kept.clear();
+    for (const RodContact& contact : touch_->contacts)
+      touch_->kept.push_back(contact.force);
+  }
   kept_lifted_.resize(6 * stages_.size());
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     std::copy_n(stages_[j].w, 3, &kept_lifted_[6 * j]);
@@ -281,6 +324,8 @@ void ShootingRod::keep() {
 }
 
 void ShootingRod::move(double alpha) {
+  for (std::size_t i = 0; i < contact_count(); ++i)
+    touch_->contacts[i].force = touch_->kept[i] + alpha * touch_->direction[i];
   for (std::size_t g = 0; g < starts_.size(); ++g) {
     const Vec12 d = alpha * start_direction_[g];
     NodeState& s = starts_[g];

@@ -71,10 +71,12 @@ void ShootingRod::mark_positions() {
 std::vector<Track*> ShootingRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
+  if (touch_ && touch_->friction) all.push_back(&touch_->turns);
   return all;
 }
 
 void ShootingRod::fill_tracks() {
+  fill_contact_tracks();
   Eigen::Index i = 0;
   auto put = [&](const double* value) {
     track_.x.segment<3>(i) = vec(value);
@@ -101,6 +103,7 @@ void ShootingRod::fill_tracks() {
 }
 
 void ShootingRod::accept_tracks() {
+  accept_contacts();
   if (!options_.rotary_inertia) return;
   for (std::size_t j = 0; j < stages_.size(); ++j)
     std::copy_n(stages_[j].R, 9, &reference_rotations_[9 * j]);
@@ -114,9 +117,9 @@ void ShootingRod::start_tracks() {
   }
   fill_tracks();
   track_.set_start(track_.x, VecX::Zero(track_.x.size()));
-  if (options_.rotary_inertia)
-    rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()),
-                              VecX::Zero(rotation_track_.x.size()));
+  for (Track* turns : tracks())
+    if (turns->kind == Track::Kind::kRotation)
+      turns->set_start(VecX::Zero(turns->x.size()), VecX::Zero(turns->x.size()));
 }
 
 // Velocities that a direction of the unknowns gives stages and nodes, cell by cell:
@@ -191,10 +194,12 @@ RodModel::Unknowns ShootingRod::unknowns() const {
   }
   u.starts = starts_;
   u.nodes = nodes_;
+  if (touch_) u.contacts = touch_->contacts;
   return u;
 }
 
 void ShootingRod::set_unknowns(const Unknowns& u) {
+  if (touch_) touch_->contacts = u.contacts;
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     std::copy_n(u.values.data() + 6 * j, 3, stages_[j].w);
     std::copy_n(u.values.data() + 6 * j + 3, 3, stages_[j].v);
@@ -213,6 +218,7 @@ void ShootingRod::predict(const std::vector<const Unknowns*>& past,
                           const std::vector<double>& weights) {
   assert(!past.empty() && past.size() == weights.size());
   Unknowns sum = *past.front();
+  sum.contacts = past.back()->contacts;  // the set is what it last was, its forces a start
   for (const Unknowns* u : past)
     if (u->starts.size() != starts_.size()) {
       set_unknowns(*past.back());

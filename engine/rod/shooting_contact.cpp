@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contacts in a shooting rod. In the sweep of columns a contact's force f is a seventh to ninth
+// unknown beside z from where it first acts to the node at which its rows C_z z + C_f f + C_A
+// zeta_A + c = 0 can be formed; these leave six of the nine free:
+//   (z, f) = Q_2 z' - Q_1 R^-T (C_A zeta_A + c),   [C_z C_f]^T = Q_1 R                   (1)
+// Q_2 is orthonormal, so a contact adds no growth however stiff it is.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/math/linear_solve.h"
+#include "engine/math/so3.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+namespace {
+
+using RowMajor12 = Eigen::Matrix<double, 12, Eigen::Dynamic, Eigen::RowMajor>;
+using ColumnsMap = Eigen::Map<RowMajor12>;
+using ConstColumnsMap = Eigen::Map<const RowMajor12>;
+using ContactColumns = Eigen::Matrix<double, 3, kWide>;
+
+// rows that say (nearly) the same determine no force
+constexpr double kSameRows = 1e-11;
+
+/// f of a contact in terms of all columns.
+ContactColumns force_columns(double unit) {
+  ContactColumns E = ContactColumns::Zero();
+  E.middleCols<3>(kContactColumn) = unit * Mat3::Identity();
+  return E;
+}
+
+}  // namespace
+
+void ShootingRod::set_surfaces(const std::vector<Surface>& surfaces, double radius, bool friction) {
+  touch_ = std::make_unique<Touch>();
+  touch_->surfaces = surfaces;
+  touch_->radius = radius;
+  touch_->friction = friction;
+  touch_->turns.resize(friction ? 3 * static_cast<Eigen::Index>(nodes_.size()) : 0);
+  accept_contacts();
+}
+
+std::vector<RodContact>& ShootingRod::contacts() {
+  return touch_->contacts;
+}
+
+const std::vector<ContactRows>& ShootingRod::contact_state() const {
+  return touch_->rows;
+}
+
+void ShootingRod::accept_contacts() {
+  if (!touch_) return;
+  touch_->accepted = nodes_;
+  touch_->references.clear();
+  for (const NodeState& node : nodes_)
+    touch_->references.emplace_back(rotation_of(node));
+}
+
+void ShootingRod::fill_contact_tracks() {
+  if (!touch_ || !touch_->friction) return;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const auto i = 3 * static_cast<Eigen::Index>(k);
+    const Vec3 theta = log_so3(touch_->references[k].transpose() * rotation_of(nodes_[k]));
+    const Vec3 theta_t = rates_.c_v * theta + touch_->turns.x_h.segment<3>(i);
+    touch_->turns.x.segment<3>(i) = theta;
+    touch_->turns.v.segment<3>(i) =
+        rates_.body_rates ? Vec3(right_jacobian(theta) * theta_t) : theta_t;
+  }
+}
+
+const NodeState& ShootingRod::cell_state(std::size_t cell) const {
+  for (std::size_t g = 1; g < starts_.size(); ++g)
+    if (segment_first_[g] == cell) return starts_[g];
+  return nodes_[cell];
+}
+
+const RodContact* ShootingRod::contact_in(std::size_t cell) const {
+  if (!touch_) return nullptr;
+  for (const RodContact& contact : touch_->contacts)
+    if (contact.cell == cell && !contact.at_node()) return &contact;
+  return nullptr;
+}
+
+// (2) of engine/rod/contact.h, at one end of the contact's cell.
+void ShootingRod::add_contact_force(const RodContact& contact, int end, NodeState& state) const {
+  const ContactWeights weights(contact.xi);
+  const double h = contact.at_node() ? 0 : cell_length(contact.cell);
+  const Vec3 t = rotation_of(state).col(2), &f = contact.force;
+  Eigen::Map<Vec3>(state.n) -= weights.H[end] * f;
+  Eigen::Map<Vec3>(state.m) -=
+      weights.G[end] * h * t.cross(f) + weights.S[end] * contact.lever.cross(f);
+}
+
+void ShootingRod::close_contacts(std::size_t node, NodeState& state) const {
+  for (const RodContact& contact : touch_->contacts)
+    if (contact.closing_node() == node)
+      add_contact_force(contact, contact.at_node() ? 0 : 1, state);
+}
+
+ContactNode ShootingRod::contact_node(const NodeState& state, std::size_t node) const {
+  ContactNode out;
+  out.p = position_of(state);
+  const Mat3 R = rotation_of(state);
+  out.t = R.col(2);
+  out.v.setZero();
+  out.w.setZero();
+  if (!touch_->friction) return out;
+  if (!rates_.dynamic()) {
+    const NodeState& from = touch_->accepted[node];
+    out.v = out.p - position_of(from);
+    out.v_by_p = 1;
+    out.w = log_so3(R * rotation_of(from).transpose());
+    out.w_by_phi = right_jacobian_inverse(-out.w);
+    return out;
+  }
+  const auto i = 3 * static_cast<Eigen::Index>(node);
+  const auto at = 3 * static_cast<Eigen::Index>(stages_.size()) + i;
+  out.v = rates_.c_v * out.p + track_.x_h.segment<3>(at);
+  out.v_by_p = rates_.c_v;
+  // equations of engine/robot/body.cpp
+  const Vec3 theta = log_so3(touch_->references[node].transpose() * R);
+  const Vec3 theta_t = rates_.c_v * theta + touch_->turns.x_h.segment<3>(i);
+  const Mat3 J_r = right_jacobian(theta);
+  Mat3 by_theta = rates_.c_v * Mat3::Identity();
+  Vec3 omega = theta_t;
+  if (rates_.body_rates) {
+    omega = J_r * theta_t;
+    by_theta = rates_.c_v * J_r + right_jacobian_derivative(theta, theta_t);
+  }
+  out.w = R * omega;
+  out.w_by_phi = R * by_theta * right_jacobian_inverse(theta) * R.transpose() - hat(out.w);
+  return out;
+}
+
+void ShootingRod::contact_residual(RodResidual& r, int& row) {
+  const ContactScale unit{scale_.length, scale_.force,
+                          rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length};
+  touch_->rows.clear();
+  for (const RodContact& contact : touch_->contacts) {
+    ContactNode ends[2];
+    const std::size_t k = contact.cell;
+    ends[0] = contact_node(contact.at_node() ? nodes_[k] : cell_state(k), k);
+    if (!contact.at_node()) ends[1] = contact_node(nodes_[k + 1], k + 1);
+    const double h = contact.at_node() ? 0 : cell_length(k);
+    touch_->rows.push_back(contact_rows(contact,
+                                        touch_->surfaces[static_cast<std::size_t>(contact.surface)],
+                                        touch_->radius, h, ends, unit));
+    for (double value : touch_->rows.back().value)
+      add_row(r, value, row++);
+  }
+}
+
+void ShootingRod::add_force_columns(const RodContact& contact, int end, const NodeState& state,
+                                    double* Y0) const {
+  ColumnsMap Y(Y0, 12, columns_);
+  const ContactWeights weights(contact.xi);
+  const double hG = contact.at_node() ? 0 : cell_length(contact.cell) * weights.G[end];
+  const ContactColumns E = force_columns(port_scale_.force);
+  const Mat3 t = hat(rotation_of(state).col(2));
+  // d(t × f) = (phi × t) × f + t × df
+  Y.middleRows<3>(6) -= weights.H[end] * E;
+  Y.middleRows<3>(9) -= hG * hat(contact.force) * t * Y.topRows<3>() +
+                        (hG * t + weights.S[end] * hat(contact.lever)) * E;
+}
+
+void ShootingRod::open_contact_columns(std::size_t cell, double* Y) {
+  touch_->opened.assign(Y, Y + 12 * kWide);
+  add_force_columns(*contact_in(cell), 0, cell_state(cell), Y);
+}
+
+bool ShootingRod::meet_contact(std::size_t index, std::size_t zone, double* Y0) {
+  ColumnsMap Y(Y0, 12, columns_);
+  const RodContact& contact = touch_->contacts[index];
+  const ContactRows& rows = touch_->rows[index];
+  const std::size_t node = contact.closing_node();
+  const int last = contact.at_node() ? 0 : 1;
+  ContactColumns C = rows.by_force * force_columns(port_scale_.force);
+  C += rows.by_p[last] * Y.middleRows<3>(3) + rows.by_phi[last] * Y.topRows<3>();
+  if (!contact.at_node()) {
+    const ConstColumnsMap opened(touch_->opened.data(), 12, kWide);
+    C += rows.by_p[0] * opened.middleRows<3>(3) + rows.by_phi[0] * opened.topRows<3>();
+  }
+  constexpr int kAffine = 12;
+  C.col(kAffine) += rows.value;
+  add_force_columns(contact, last, nodes_[node], Y0);
+  // (1); TallQr takes three more rows that concern nothing
+  TallQr::Mat12x6 A = TallQr::Mat12x6::Zero();
+  A.topLeftCorner<6, 3>() = C.leftCols<6>().transpose();
+  A.block<3, 3>(6, 0) = C.middleCols<3>(kContactColumn).transpose();
+  A.bottomRightCorner<3, 3>().setIdentity();
+  const TallQr qr(A);
+  const Vec3 pivots = qr.R.diagonal().head<3>().cwiseAbs();
+  if (!(pivots.minCoeff() > kSameRows * pivots.maxCoeff())) return false;
+  Eigen::Matrix<double, 6, 7> particular = Eigen::Matrix<double, 6, 7>::Zero();
+  particular.topLeftCorner<3, 6>() = C.middleCols<6>(6);
+  particular.topRightCorner<3, 1>() = C.col(kAffine);
+  const Mat6 lower = qr.R.transpose();
+  lower.triangularView<Eigen::Lower>().solveInPlace(particular);
+  const Eigen::Matrix<double, 12, 7> held = -(qr.Q1 * particular);
+  Recombination& rec = recombinations_[zone];
+  const double unit = port_scale_.force;
+  rec.N = qr.Q2.topRows<6>();
+  rec.P_A = held.topLeftCorner<6, 6>();
+  rec.p = held.topRightCorner<6, 1>();
+  rec.F = unit * qr.Q2.middleRows<3>(6);
+  rec.F_A = unit * held.block<3, 6>(6, 0);
+  rec.f = unit * held.block<3, 1>(6, 6);
+  const TallQr::Mat12x6 Y_z = Y.leftCols<6>();
+  const Eigen::Matrix<double, 12, 3> Y_f = Y.middleCols<3>(kContactColumn);
+  Y.leftCols<6>() = Y_z * rec.N + Y_f * (rec.F / unit);
+  Y.middleCols<6>(6) += Y_z * rec.P_A + Y_f * (rec.F_A / unit);
+  Y.col(kAffine) += Y_z * rec.p + Y_f * (rec.f / unit);
+  Y.middleCols<3>(kContactColumn).setZero();
+  return true;
+}
+
+}  // namespace cprsim
