@@ -58,10 +58,13 @@ const char* unit_of(Quantity quantity) {
     case Quantity::kContactPenetration:
       return "m";
     case Quantity::kLinearVelocity:
+    case Quantity::kContactSlip:
       return "m/s";
     case Quantity::kAngularVelocity:
       return "rad/s";
     case Quantity::kForce:
+    case Quantity::kContactForce:
+    case Quantity::kContactFriction:
       return "N";
     case Quantity::kMoment:
       return "N m";
@@ -167,6 +170,9 @@ void add_sums(List& list, ChannelEntity kind) {
   } else {
     list.add("count", Quantity::kContactCount);
     list.add("penetration", Quantity::kContactPenetration);
+    list.add("force", Quantity::kContactForce);
+    list.add("friction", Quantity::kContactFriction);
+    list.add("slip", Quantity::kContactSlip);
   }
 }
 

@@ -39,7 +39,10 @@ enum class Quantity {
   kSolverStep,
   kSolverWallTime,
   kContactCount,
-  kContactPenetration
+  kContactPenetration,
+  kContactForce,
+  kContactFriction,
+  kContactSlip
 };
 
 /// One scalar of the robot's state.

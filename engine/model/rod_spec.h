@@ -68,6 +68,7 @@ struct RodSpec {
       Vec3::Zero();  ///< bending about x and y, twist: of the unloaded rod, section axes, 1/m
   std::optional<DampingSpec> damping;
   bool gravity = true;
+  SurfaceSpec surface;
   std::vector<std::string> without;  ///< effects switched off for this rod
   Look look;
 };

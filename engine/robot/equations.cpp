@@ -96,6 +96,11 @@ void Equations::accept_equilibrium(double t) {
     joint.accept(body_pose(joint.parent), body_pose(joint.child));
 }
 
+void Equations::accept_contacts() {
+  for (RobotRod& rod : robot_.rods)
+    if (TouchingRod* side = rod.model->touching()) side->accept_contacts();
+}
+
 void Equations::set_fraction(double fraction) {
   if (fraction < 1 && !gaps_captured_) {
     for (RobotRod& rod : robot_.rods)

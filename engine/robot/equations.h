@@ -47,8 +47,13 @@ class Equations final : public Problem {
   /// here, friction holds on to where it has slipped to.
   void accept_equilibrium(double t);
 
+  /// Quasi-statics with friction: slip counts from the present state.
+  void accept_contacts();
+
   /// Without loads, gravity and effort drives: only assembly.
   void set_loads(bool on) { loads_on_ = on; }
+
+  bool loads_on() const { return loads_on_; }
 
   /// Bodies stay where they are (rods find their shape between them).
   void hold_bodies(bool hold) { bodies_held_ = hold; }

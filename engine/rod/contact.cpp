@@ -26,6 +26,8 @@ Term tangential_row(const RodContact& contact, const Distance& at, const Vec3& u
     row.value = P * rate;
     row.by_x = projected_by_x(at, rate);
     row.by_u = P / scale.rate;
+    row.by_f = scale.axial_compliance / scale.length * contact.axis * contact.axis.transpose();
+    row.value += row.by_f * (contact.force - contact.held);
     return row;
   }
   row.value = P * f;

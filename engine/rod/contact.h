@@ -14,6 +14,9 @@
 //   tau = P (f / F - kappa u / U),  u = sum_a H_a v_a + h G_a w_a × t_a + S_a w_a × l    (6)
 // (5) is Coulomb's law by return mapping (Alart & Curnier, Comput. Methods Appl. Mech. Eng. 92,
 // 1991). There is no penalty: the force is an unknown, its rows hold to the solver's tolerance.
+// How sticking points share their axial friction is open where the rod cannot stretch; (4) then has
+// a a^T (f - f_0) C / L besides: a the tangent, f_0 the force when the step began, C the compliance
+// that a cell would have. Nothing creeps, since f_0 follows f.
 // Which points touch, and which of (3) to (5) holds, is decided between solves
 // (engine/robot/contacts.h). L, F are the rod's scales, U is L times the rate of the scheme.
 #pragma once
@@ -42,6 +45,8 @@ struct RodContact {
   double friction = 0;        ///< mu
   double kappa = 1;           ///< weighs u in (6)
   Vec3 lever = Vec3::Zero();  ///< l, as it was when the point was chosen
+  Vec3 axis = Vec3::UnitZ();  ///< a, likewise
+  Vec3 held = Vec3::Zero();   ///< f_0
   Vec3 force = Vec3::Zero();  ///< f: on the rod, world axes
 
   bool at_node() const { return xi == 0; }
@@ -66,6 +71,7 @@ struct ContactWeights {
 
 struct ContactScale {
   double length = 1, force = 1, rate = 1;  ///< L, F, U
+  double axial_compliance = 0;             ///< C
 };
 
 struct ContactRows {

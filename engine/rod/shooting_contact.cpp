@@ -20,7 +20,7 @@ using ConstColumnsMap = Eigen::Map<const RowMajor12>;
 using ContactColumns = Eigen::Matrix<double, 3, kWide>;
 
 // rows that say (nearly) the same determine no force
-constexpr double kSameRows = 1e-11;
+constexpr double kSameRows = 1e-15;
 
 /// f of a contact in terms of all columns.
 ContactColumns force_columns(double unit) {
@@ -54,6 +54,8 @@ void ShootingRod::accept_contacts() {
   touch_->references.clear();
   for (const NodeState& node : nodes_)
     touch_->references.emplace_back(rotation_of(node));
+  for (RodContact& contact : touch_->contacts)
+    contact.held = contact.force;
 }
 
 void ShootingRod::fill_contact_tracks() {
@@ -134,7 +136,8 @@ ContactNode ShootingRod::contact_node(const NodeState& state, std::size_t node) 
 
 void ShootingRod::contact_residual(RodResidual& r, int& row) {
   const ContactScale unit{scale_.length, scale_.force,
-                          rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length};
+                          rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length,
+                          options_.extension ? 0 : scale_.length / cells_ / section_.K_se.z()};
   touch_->rows.clear();
   for (const RodContact& contact : touch_->contacts) {
     ContactNode ends[2];

@@ -137,7 +137,8 @@ double EnergyLedger::friction_energy() const {
   return energy;
 }
 
-void EnergyLedger::close_step(double t, double damping_loss, double drive_work) {
+void EnergyLedger::close_step(double t, double damping_loss, double drive_work, bool cushioned) {
+  const double before = sample_.balance;
   collect(t, true);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Point &a = points_before_[i], &b = points_[i];
@@ -155,6 +156,9 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work) 
   }
   sample_.dissipated -= friction_energy() - friction_energy_before_;
   sum_up();
+  if (!cushioned || sample_.balance >= before) return;
+  sample_.dissipated += before - sample_.balance;
+  sample_.balance = before;
 }
 
 }  // namespace cprsim

@@ -24,7 +24,8 @@ class EnergyLedger {
   void begin_step(double t);
 
   /// What a step that ends at t has exchanged, J: taken out by damping, put in by drives.
-  void close_step(double t, double damping_loss, double drive_work);
+  /// @param cushioned what is lost besides counts as taken by an impact
+  void close_step(double t, double damping_loss, double drive_work, bool cushioned = false);
 
   /// Power that damping takes out now, W.
   double damping_power() const;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/robot/contacts.h"
 #include "engine/run/ledger.h"
+#include "engine/run/touching_solve.h"
 
 namespace cprsim {
 namespace {
@@ -32,10 +34,11 @@ double sum_of_sizes(const std::vector<double>& w) {
 }  // namespace
 
 Marcher::Marcher(Robot& robot, Equations& equations, const SchemeChoice& scheme,
-                 const SolveOptions& options)
+                 const SolveOptions& options, RodContacts& contacts)
     : robot_(robot),
       equations_(equations),
       options_(options),
+      contacts_(contacts),
       stepper_(scheme),
       tracks_(robot.tracks()) {}
 
@@ -46,6 +49,11 @@ void Marcher::begin() {
 }
 
 void Marcher::restart() {
+  begin();
+}
+
+void Marcher::cushion(bool on) {
+  stepper_.cushion(on);
   begin();
 }
 
@@ -73,7 +81,7 @@ void Marcher::predict(double time) {
 
 // Newton from the prediction; failing that, from where the step began; failing that,
 // Levenberg-Marquardt.
-SolveReport Marcher::solve_stage(double time) {
+SolveReport Marcher::solve_once(double time) {
   predict(time);
   SolveReport report = newton(equations_, options_);
   if (report.converged()) return report;
@@ -90,6 +98,11 @@ SolveReport Marcher::solve_stage(double time) {
   return report;
 }
 
+SolveReport Marcher::solve_stage(double time) {
+  const SolveReport first = solve_once(time);
+  return contacts_.any() ? settle_contacts(contacts_, equations_, options_, first) : first;
+}
+
 void Marcher::finish_stage(int i) {
   for (RigidBody& body : robot_.bodies)
     body.fill_tracks(rates_);
@@ -104,6 +117,7 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
   Outcome out;
   h_ = h;
   start_ = equations_.unknowns();
+  contacts_.begin_step();
   if (past_.empty()) past_.push_back({t, start_});
   past_accepted_ = past_.size();
   const int stages = stepper_.begin_step(h, tracks_);
@@ -126,6 +140,8 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     works.push_back(ledger.drive_power(time, true));
   }
   out.converged = true;
+  out.touched = contacts_.changed();
+  out.leapt = contacts_.leapt();
   out.error = error_estimate();
   out.damping_loss = stepper_.integrate(losses) * h;
   out.drive_work = stepper_.integrate(works) * h;

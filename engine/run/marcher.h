@@ -15,11 +15,12 @@
 namespace cprsim {
 
 class EnergyLedger;
+class RodContacts;
 
 class Marcher {
  public:
   Marcher(Robot& robot, Equations& equations, const SchemeChoice& scheme,
-          const SolveOptions& options);
+          const SolveOptions& options, RodContacts& contacts);
 
   /// After the start state is set: tracks at rest or moving, no history.
   void begin();
@@ -27,10 +28,15 @@ class Marcher {
   /// Forgets history: called at every jump.
   void restart();
 
+  /// From here on backward Euler, or (off) the scheme again from its starter.
+  void cushion(bool on);
+
   struct Outcome {
     bool converged = false;
-    SolveReport report;  ///< of the last solve; iterations and counts summed over the step
-    double error = 0;    ///< estimated local error, dimensionless (length: rod length; angle: rad)
+    bool touched = false;  ///< contacts came, went, stuck or slipped
+    bool leapt = false;    ///< a rod may have passed through something
+    SolveReport report;    ///< of the last solve; iterations and counts summed over the step
+    double error = 0;  ///< estimated local error, dimensionless (length: rod length; angle: rad)
     double damping_loss = 0, drive_work = 0;  ///< J
   };
 
@@ -53,12 +59,14 @@ class Marcher {
 
   void predict(double time);
   SolveReport solve_stage(double time);
+  SolveReport solve_once(double time);
   double error_estimate() const;
   void finish_stage(int i);
 
   Robot& robot_;
   Equations& equations_;
   SolveOptions options_;
+  RodContacts& contacts_;
   Stepper stepper_;
   std::vector<Track*> tracks_;
   std::deque<Solved> past_;        ///< accepted and stage solutions, oldest first

@@ -220,6 +220,12 @@ double value_of(const Channel& channel, const ContactSample& contact) {
       return contact.count;
     case Quantity::kContactPenetration:
       return contact.penetration;
+    case Quantity::kContactForce:
+      return contact.force;
+    case Quantity::kContactFriction:
+      return contact.friction;
+    case Quantity::kContactSlip:
+      return contact.slip;
     default:
       no_such_quantity(channel);
   }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/robot/contacts.h"
 #include "engine/robot/equations.h"
 #include "engine/robot/free_bodies.h"
 #include "engine/run/continuous_drives.h"
@@ -14,9 +15,16 @@
 #include "engine/run/ledger.h"
 #include "engine/run/marcher.h"
 #include "engine/run/observation.h"
+#include "engine/run/touching_solve.h"
 
 namespace cprsim {
 namespace {
+
+// Steps of backward Euler from a change of contact on: the change itself, one that takes the
+// velocity into the obstacle out, one that takes its acceleration out; and their size over that of
+// the largest step where the scheme chooses it.
+constexpr int kCushionedSteps = 3;
+constexpr double kCushion = 0.1;
 
 using Clock = std::chrono::steady_clock;
 
@@ -36,6 +44,7 @@ struct Simulation::Parts {
   const Scene scene;  // bodies, rods and loads point into it
   std::unique_ptr<FreeBodies> free_bodies;
   Robot robot;
+  RodContacts contacts;
   Equations equations;
   StepPlan plan;
   Marcher marcher;
@@ -45,6 +54,7 @@ struct Simulation::Parts {
   RunStatus status = RunStatus::kRunning;
   double t = 0, end = 0, h = 0;
   double last_error = 0;
+  int cushioned = 0;  ///< steps of backward Euler still to take after a contact changed
   std::vector<double> breaks;
   std::string failure;
   SolveReport report;
@@ -55,9 +65,10 @@ struct Simulation::Parts {
       : scene(with_continuous_drives(std::move(s))),
         free_bodies(std::move(free)),
         robot(build_robot(scene)),
+        contacts(robot),
         equations(robot, scene.solver.residual_tolerance.value_or(1e-9)),
         plan(plan_steps(scene)),
-        marcher(robot, equations, plan.scheme, step_options(scene.solver)),
+        marcher(robot, equations, plan.scheme, step_options(scene.solver), contacts),
         ledger(robot, free_bodies.get()) {
     h = plan.adaptive ? std::min(plan.step, 1e-3) : plan.step;
     if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
@@ -97,6 +108,7 @@ struct Simulation::Parts {
   void observe(double step, double wall) {
     before = std::move(now);
     now = take_snapshot(robot, free_bodies.get(), t);
+    if (contacts.any()) add_rod_contacts(now.contact);
     now.energy = ledger.sample();
     now.solver = {report.iterations, report.residual, step, wall};
   }
@@ -104,7 +116,9 @@ struct Simulation::Parts {
   bool find_equilibrium() {
     equations.set_instant(t, true, StageRates{});
     equations.mark_start();
-    report = solve_statics(equations, static_options(scene.solver));
+    const SolveOptions options = static_options(scene.solver);
+    report = contacts.any() && equations.loads_on() ? load_gradually(contacts, equations, options)
+                                                    : solve_statics(equations, options);
     count(report);
     if (!report.converged()) fail("no static equilibrium found");
     return report.converged();
@@ -122,6 +136,25 @@ struct Simulation::Parts {
     count(report);
     if (!report.converged()) equations.set_unknowns(own);
     return report.converged();
+  }
+
+  void add_rod_contacts(ContactSample& sample) {
+    const ContactSample rods = contacts.sample();
+    sample.count += rods.count;
+    sample.penetration = std::max(sample.penetration, rods.penetration);
+    sample.force = rods.force;
+    sample.friction = rods.friction;
+    sample.slip = rods.slip;
+  }
+
+  /// A rod that begins inside an obstacle would be shot out of it.
+  bool starts_clear() {
+    if (!contacts.any()) return true;
+    const std::string overlap = contacts.overlap();
+    if (overlap.empty()) return true;
+    status = RunStatus::kFailed;
+    failure = overlap;
+    return false;
   }
 
   /// @return whether the neighbour's equilibrium could be followed
@@ -171,6 +204,15 @@ struct Simulation::Parts {
     return at == breaks.end() ? end : *at;
   }
 
+  /// After a cushioned step: on with it where contacts still change, else back to the scheme.
+  void soften(bool touched) {
+    cushioned = touched ? kCushionedSteps : cushioned - 1;
+    if (cushioned > 0) return;
+    marcher.cushion(false);
+    last_error = 0;
+    if (plan.adaptive) h = std::min(h, 1e-3);
+  }
+
   void step_dynamic();
   void step_quasistatic();
   double controlled(double step, double error) const;
@@ -195,7 +237,8 @@ bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
   const bool equilibrium =
       scene.simulation.mode != Mode::kDynamic || scene.simulation.initial_static;
   const bool near = neighbour && equilibrium && !free_only() && follow(*neighbour);
-  if (!near && !free_only() && !(equilibrium ? find_equilibrium() : assemble())) {
+  if (!near && !free_only() &&
+      (!(equilibrium ? find_equilibrium() : assemble()) || !starts_clear())) {
     observe(0, seconds_since(begin));
     return false;
   }
@@ -246,7 +289,7 @@ void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outco
   report = outcome.report;
   count(report);
   if (free_bodies) free_bodies->advance(h_used, link_motions(robot, free_bodies.get()));
-  ledger.close_step(t, outcome.damping_loss, outcome.drive_work);
+  ledger.close_step(t, outcome.damping_loss, outcome.drive_work, cushioned > 0);
   ++statistics.steps;
   statistics.largest_step = std::max(statistics.largest_step, h_used);
   statistics.smallest_step =
@@ -259,21 +302,41 @@ void Simulation::Parts::step_dynamic() {
   const double stop = next_break();
   ledger.begin_step(t);
   double target = h;
-  if (plan.adaptive && free_bodies) target = std::min(target, scene.max_step_size);
+  if (plan.adaptive && (free_bodies || contacts.touching())) target = std::min(target, scene.max_step_size);
   for (int failures = 0;; ++failures) {
     const double left = stop - t;
     // land on the break; in adaptive mode without leaving a sliver
     double step = target >= left * (1 - 1e-9) ? left : target;
     if (plan.adaptive && step < left && left < 2 * step) step = 0.5 * left;
     const Marcher::Outcome outcome = marcher.attempt(t, step, ledger);
+    if (outcome.leapt) {
+      marcher.reject();
+      ++statistics.rejected;
+      failures = -1;
+      target = 0.5 * step;
+      if (target > 1e-12 * std::max(1.0, end)) continue;
+      failure = "a rod would pass through an obstacle at t = " + number(t) + " s";
+      status = RunStatus::kFailed;
+      return;
+    }
+    if (outcome.converged && outcome.touched && cushioned == 0) {
+      marcher.reject();
+      ++statistics.rejected;
+      marcher.cushion(true);
+      cushioned = kCushionedSteps;
+      failures = -1;
+      if (plan.adaptive) target = std::min(target, kCushion * scene.max_step_size);
+      continue;
+    }
     if (outcome.converged && (!plan.adaptive || outcome.error <= plan.tolerance)) {
       const bool landed = step == left;
-      if (plan.adaptive) {
+      if (plan.adaptive && cushioned == 0) {
         const double next = controlled(step, outcome.error);
         h = landed && step < 0.5 * target ? std::max(target, next) : next;
         last_error = outcome.error;
       }
       arrive(landed ? stop : t + step, step, outcome);
+      if (cushioned > 0) soften(outcome.touched);
       if (landed && t < end) {
         marcher.restart();
         last_error = 0;
@@ -309,13 +372,16 @@ void Simulation::Parts::step_quasistatic() {
     const double step = std::min(target, stop - from);
     t = step >= (stop - from) * (1 - 1e-9) ? stop : from + step;
     equations.set_instant(t, true, StageRates{});
-    report = newton(equations, static_options(scene.solver));
+    const SolveOptions options = static_options(scene.solver);
+    contacts.begin_step();
+    report = newton(equations, options);
     if (!report.converged()) {
       equations.set_unknowns(start);
-      report = levenberg_marquardt(equations, static_options(scene.solver));
+      report = levenberg_marquardt(equations, options);
     }
+    if (contacts.any()) report = settle_contacts(contacts, equations, options, report);
     count(report);
-    if (report.converged()) {
+    if (report.converged() && !contacts.leapt()) {
       start_motion();
       equations.accept_equilibrium(t);
       ledger.close_step(t, 0,

@@ -38,7 +38,9 @@ struct SolverSample {
 
 struct ContactSample {
   int count = 0;
-  double penetration = 0;  ///< deepest, m
+  double penetration = 0;          ///< deepest, m
+  double force = 0, friction = 0;  ///< sums of normal and tangential forces on rods, N
+  double slip = 0;                 ///< fastest of rods, m/s
 };
 
 struct Snapshot {

@@ -47,8 +47,7 @@ void Track::set_start(const VecX& x_start, const VecX& v_start) {
 
 int Stepper::begin_step(double h, const std::vector<Track*>& tracks) {
   h_ = h;
-  table_ =
-      fresh_ && choice_.kind != SchemeKind::kBackwardEuler ? &sdirk3() : table_of(choice_.kind);
+  table_ = fresh_ && kind() != SchemeKind::kBackwardEuler ? &sdirk3() : table_of(kind());
   if (!table_) return 1;
   if (!table_->explicit_first) return table_->stages;
   for (Track* t : tracks) {
@@ -63,8 +62,8 @@ double Stepper::stage_time(int i) const {
 }
 
 Stepper::Multistep Stepper::multistep_coefficients() const {
-  if (choice_.kind == SchemeKind::kBackwardEuler) return {1 / h_, -1 / h_, 0, 0};
-  const double alpha = choice_.kind == SchemeKind::kBdf2 ? 0 : choice_.alpha;
+  if (kind() == SchemeKind::kBackwardEuler) return {1 / h_, -1 / h_, 0, 0};
+  const double alpha = kind() == SchemeKind::kBdf2 ? 0 : choice_.alpha;
   // derivative at alpha h of the parabola through (0, x_n), (-h, x_n-1), (-h - h_last, x_n-2)
   const double t = alpha * h_, t1 = -h_, t2 = -h_ - h_last_, s = 1 / (1 + alpha);
   return {s * (2 * t - t1 - t2) / (t1 * t2), s * (2 * t - t2) / (t1 * (t1 - t2)),
@@ -96,7 +95,7 @@ StageRates Stepper::begin_stage(int i, const std::vector<Track*>& tracks) {
       begin_dirk_stage(i + (table_->explicit_first ? 1 : 0), *t);
     return rates_;
   }
-  if (choice_.kind == SchemeKind::kGeneralizedAlpha) {
+  if (kind() == SchemeKind::kGeneralizedAlpha) {
     const AlphaCoefficients g = generalized_alpha(choice_.rho_inf);
     rates_ = {g.gamma / (g.beta * h_), (1 - g.alpha_m) / ((1 - g.alpha_f) * h_ * g.gamma), false};
     for (Track* t : tracks) {
@@ -163,7 +162,7 @@ void Stepper::accept(const std::vector<Track*>& tracks) {
   for (Track* t : tracks) {
     // after a starter the auxiliary acceleration is the true one: its offset is second order in the
     // step
-    if (choice_.kind == SchemeKind::kGeneralizedAlpha && !table_)
+    if (kind() == SchemeKind::kGeneralizedAlpha && !table_)
       t->A0 = (t->v - t->v0 - (h_ * (1 - g.gamma)) * t->A0) / (h_ * g.gamma);
     else
       t->A0 = t->a;
@@ -186,7 +185,7 @@ void Stepper::accept(const std::vector<Track*>& tracks) {
 }
 
 const char* Stepper::step_name() const {
-  return table_ ? table_->name : to_string(choice_.kind);
+  return table_ ? table_->name : to_string(kind());
 }
 
 const char* to_string(SchemeKind kind) {

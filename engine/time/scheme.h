@@ -80,6 +80,10 @@ class Stepper {
   /// Forgets derivatives: the next step uses the starter. Called at start and at every jump.
   void reset() { fresh_ = true; }
 
+  /// Steps that follow are backward Euler's, until told otherwise: its velocities follow from
+  /// positions alone, so that an impact cannot add energy.
+  void cushion(bool on) { cushioned_ = on; }
+
   /// Prepares a step. @return the number of implicit solves it takes.
   int begin_step(double h, const std::vector<Track*>& tracks);
 
@@ -118,10 +122,13 @@ class Stepper {
   Multistep multistep_coefficients() const;
   void begin_dirk_stage(int i, Track& t) const;
 
+  SchemeKind kind() const { return cushioned_ ? SchemeKind::kBackwardEuler : choice_.kind; }
+
   SchemeChoice choice_;
   const DirkTable* table_ =
       nullptr;  ///< table of the current step, null for multistep and generalised-alpha
   bool fresh_ = true;
+  bool cushioned_ = false;
   double h_ = 0, h_last_ = 0;
   StageRates rates_;
 };

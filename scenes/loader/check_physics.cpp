@@ -89,10 +89,6 @@ void check_effect_data(Reading& r, const Node& world) {
   if (damping && scene.rods.empty())
     r.report.at(Severity::kWarning, "W503", asked[static_cast<std::size_t>(Effect::kDamping)], 8,
                 "damping is listed and there is no rod; joints have their own <dynamics>");
-  if (scene.effects.has(Effect::kContact) && !scene.rods.empty())
-    r.report.at(
-        Severity::kWarning, "W506", asked[static_cast<std::size_t>(Effect::kContact)], 8,
-        "rods pass through obstacles in this version; contact is between rigid bodies only");
 }
 
 double thickness(const SectionSpec& section) {

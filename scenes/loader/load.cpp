@@ -81,6 +81,7 @@ void read_world(Reading& reading, const Node& world) {
   read_actions(reading, world);
   read_views(reading, world);
   check_physics(reading);
+  check_contact(reading);
   check_planar(reading, world);
   read_outputs(reading, world);
 }

@@ -120,28 +120,6 @@ ShapeSpec read_geometry(Reading& r, const Node& owner) {
   return only->broken ? ShapeSpec{} : read_primitive(r, *only);
 }
 
-SurfaceSpec read_surface(const Node* node) {
-  SurfaceSpec surface;
-  if (!node) return surface;
-  if (const Node* friction = node->child("friction")) {
-    if (const Node* bullet = friction->child("bullet")) {
-      surface.friction = number_of(bullet->child("friction"), surface.friction);
-      surface.rolling_friction = number_of(bullet->child("rolling_friction"), 0);
-    }
-    if (const Node* ode = friction->child("ode"))
-      surface.friction = number_of(ode->child("mu"), surface.friction);
-  }
-  if (const Node* bounce = node->child("bounce"))
-    surface.restitution = number_of(bounce->child("restitution_coefficient"), 0);
-  if (const Node* contact = node->child("contact")) {
-    surface.collide_bitmask =
-        static_cast<unsigned>(number_of(contact->child("collide_bitmask"), 0xffff));
-    surface.category_bitmask =
-        static_cast<unsigned>(number_of(contact->child("category_bitmask"), 0xffff));
-  }
-  return surface;
-}
-
 void read_inertial(Reading& r, const Node& node, BodySpec& body) {
   const Node* inertia = node.child("inertia");
   body.mass = number_of(node.child("mass"), 0);
@@ -207,6 +185,28 @@ void read_shapes_of(Reading& r, const Node& link, int vertex, BodySpec& body) {
 }
 
 }  // namespace
+
+SurfaceSpec read_surface(const Node* node) {
+  SurfaceSpec surface;
+  if (!node) return surface;
+  if (const Node* friction = node->child("friction")) {
+    if (const Node* bullet = friction->child("bullet")) {
+      surface.friction = number_of(bullet->child("friction"), surface.friction);
+      surface.rolling_friction = number_of(bullet->child("rolling_friction"), 0);
+    }
+    if (const Node* ode = friction->child("ode"))
+      surface.friction = number_of(ode->child("mu"), surface.friction);
+  }
+  if (const Node* bounce = node->child("bounce"))
+    surface.restitution = number_of(bounce->child("restitution_coefficient"), 0);
+  if (const Node* contact = node->child("contact")) {
+    surface.collide_bitmask =
+        static_cast<unsigned>(number_of(contact->child("collide_bitmask"), 0xffff));
+    surface.category_bitmask =
+        static_cast<unsigned>(number_of(contact->child("category_bitmask"), 0xffff));
+  }
+  return surface;
+}
 
 Look read_look(const Node* material, Look look) {
   if (!material) return look;

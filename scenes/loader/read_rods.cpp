@@ -277,10 +277,9 @@ void read_ends(Reading& r, const RodEntry& entry, RodSpec& rod) {
   const Node* tip = entry.node->child("tip");
   if (base) rod.base = read_end(r, *base, entry.scope);
   if (tip) rod.tip = read_end(r, *tip, entry.scope);
-  if (base && base->value("joint") == "free")
-    r.report.bad_value("E520", *base, *base->attribute("joint"),
-                       "a free base is not available in this version",
-                       "available: fixed, revolute, ball, universal");
+  if (base && base->value("joint") == "free" && r.scene.simulation.mode != Mode::kDynamic)
+    r.report.bad_value("E520", *base, *base->attribute("joint"), "a free base has no equilibrium",
+                       "available: fixed, revolute, ball, universal; free in a dynamic scene");
 }
 
 void read_without(Reading& r, const Chain& chain, RodSpec& rod) {
@@ -325,10 +324,8 @@ void read_rods(Reading& r, const Node&) {
       if (const Node* visual = part(chain, "visual"))
         rod.look = read_look(visual->child("material"), {});
       if (const Node* surface = part(chain, "surface")) {
-        if (r.scene.effects.has(Effect::kContact))
-          r.report.error("E520", *surface, "contact of rods is not available in this version",
-                         "available: contact between rigid bodies; leave out the rod's <surface>");
-        else
+        rod.surface = read_surface(surface);
+        if (!r.scene.effects.has(Effect::kContact))
           r.report.note("W511", *surface,
                         "<surface> of a rod is given, contact is not among the effects");
       }

@@ -45,6 +45,7 @@ void read_actions(Reading& reading, const Node& world);  // drives, loads, initi
 void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings
 void read_outputs(Reading& reading, const Node& world);  // videos, records, expectations, sweeps
 void check_physics(Reading& reading);                    // what only the whole scene can tell
+void check_contact(Reading& reading);                    // what rods can touch
 void check_planar(Reading& reading, const Node& world);  // that nothing leaves the plane
 
 /// Summed shapes of time that are children of `node`.
@@ -52,6 +53,7 @@ Profile read_shapes(Reading& reading, const Node& node);
 
 /// Look of a <material> over a default one.
 Look read_look(const Node* material, Look look);
+SurfaceSpec read_surface(const Node* node);
 
 /// True if nothing can move the body: static, or welded to the world.
 std::vector<bool> fixed_bodies(const Scene& scene);

@@ -28,6 +28,8 @@ RodContact contact_at(std::size_t cell, double xi, Grip grip, Numbers& numbers) 
   contact.friction = 0.4;
   contact.kappa = 1.7;
   contact.lever = 0.02 * numbers.vec3();
+  contact.axis = numbers.vec3().normalized();
+  contact.held = numbers.vec3();
   contact.force = Vec3(3, -2, 1) + numbers.vec3();
   return contact;
 }

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether the contacts that a scene with rods asks for can be carried out.
+#include <algorithm>
+
+#include "engine/model/distance.h"
+#include "scenes/loader/reading.h"
+
+namespace cprsim {
+namespace {
+
+constexpr int kRodCaret = 12, kCollisionCaret = 10;  // length of "<cprsim:rod", "<collision"
+
+bool round_section(const SectionSpec& section) {
+  return section.shape == SectionShape::kCircle || section.shape == SectionShape::kAnnulus;
+}
+
+bool touches(const RodSpec& rod) {
+  return std::find(rod.without.begin(), rod.without.end(), "contact") == rod.without.end();
+}
+
+bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b) {
+  return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
+}
+
+class ContactCheck {
+ public:
+  explicit ContactCheck(Reading& r) : r_(r), fixed_(fixed_bodies(r.scene)) {}
+
+  void run() {
+    const Scene& scene = r_.scene;
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      for (const ColliderSpec& collider : scene.bodies[b].colliders)
+        if (met(collider)) check(collider, scene.bodies[b].name, fixed_[b]);
+    if (!obstacles_) return;
+    if (scene.planar_normal)
+      complain(scene.simulation.place, 19, "contact of rods is not available in a <planar> scene",
+               "leave <planar> out");
+    for (const RodSpec& rod : scene.rods)
+      if (touches(rod) && !round_section(rod.section))
+        complain(
+            rod.place, kRodCaret,
+            "contact of rods is available for round sections only: '" + rod.name + "' has another",
+            "give the rod <without>contact</without>");
+  }
+
+ private:
+  void complain(const Place& place, int caret, const std::string& what, const std::string& hint) {
+    r_.report.at(Severity::kError, "E520", place, caret, what).suggestion = hint;
+  }
+
+  /// Whether some rod may touch it.
+  bool met(const ColliderSpec& collider) const {
+    return collider.shape.kind != ShapeKind::kEmpty &&
+           std::any_of(r_.scene.rods.begin(), r_.scene.rods.end(), [&](const RodSpec& rod) {
+             return touches(rod) && may_touch(rod.surface, collider.surface);
+           });
+  }
+
+  void check(const ColliderSpec& collider, const std::string& body, bool fixed) {
+    const std::string name = "'" + body + "::" + collider.name + "'";
+    if (!fixed) {
+      r_.report.at(Severity::kWarning, "W506", collider.place, kCollisionCaret,
+                   "rods pass through " + name + ", which moves: they touch what stands still");
+      return;
+    }
+    obstacles_ = true;
+    if (!has_distance(collider.shape.kind))
+      complain(collider.place, kCollisionCaret,
+               "rods cannot touch the shape of " + name + " in this version",
+               "available: plane, box, sphere, capsule, cylinder, cone; or give the rods "
+               "<without>contact</without>");
+    if (collider.surface.restitution > 0)
+      r_.report.at(Severity::kNote, "W592", collider.place, kCollisionCaret,
+                   "the restitution of " + name +
+                       " is not for rods: how they bounce follows from their elasticity");
+  }
+
+  Reading& r_;
+  std::vector<bool> fixed_;
+  bool obstacles_ = false;
+};
+
+}  // namespace
+
+void check_contact(Reading& r) {
+  if (r.scene.effects.has(Effect::kContact) && !r.scene.rods.empty()) ContactCheck(r).run();
+}
+
+}  // namespace cprsim

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gallery's contact scenes: each says itself what must come out.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/tools/scratch_folder.h"
+
+namespace cprsim {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kScenes = fs::path(CPRSIM_SOURCE_DIR) / "scenes/contact";
+
+/// Exit code of a run without films.
+int run(const fs::path& scene, const std::string& options = "") {
+  const ScratchFolder folder;
+  const std::string command = std::string(CPRSIM_BINARY_DIR) + "/bin/cprsim " + scene.string() +
+                              " --no-video -o " + (folder / "out").string() + " " +
+                              options + " > /dev/null 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(ContactScenes, MeetTheirExpectations) {
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(kScenes)) {
+    if (entry.path().extension() != ".xml") continue;
+    EXPECT_EQ(run(entry.path()), 0) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+}
+
+// What the expectations are worth: without contact they fail.
+TEST(ContactScenes, FailWithoutContact) {
+  EXPECT_EQ(run(kScenes / "rod_on_floor.xml", "--without contact"), 1);
+  EXPECT_EQ(run(kScenes / "over_a_cylinder.xml", "--without contact"), 1);
+}
+
+}  // namespace
+}  // namespace cprsim
