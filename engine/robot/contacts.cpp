@@ -3,24 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cprsim {
 namespace {
 
-// of the radius: how deep a point sinks before it touches; well below the tolerance, well above
-// what a converged solve leaves
-constexpr double kNotice = 0.1 * kContactTolerance;
-// of the radius: how far a contact may have slid along its rod before it is moved after
-constexpr double kSlide = 1e-3;
 // of the robot's force: pulls below are round-off
 constexpr double kPull = 1e-9;
-// of a cell: contacts between nodes stay this far from them
-constexpr double kEdge = 1e-3;
-// turn of the surface's normal along a cell: less is flat
-constexpr double kFlat = 1e-6;
-// of a cell: a node this near to a contact needs none of its own
-constexpr double kBeside = 0.1;
 // from this round on one change at a time
 constexpr int kPatience = 12;
 
@@ -69,184 +57,6 @@ RodContacts::RodContacts(Robot& robot) : robot_(robot) {
   }
 }
 
-double RodContacts::length(const Rod& rod, std::size_t cell) const {
-  const std::vector<double>& grid = rod.side->contact_grid();
-  return (grid[cell + 1] - grid[cell]) * rod.rod->length;
-}
-
-Vec3 RodContacts::point(const Rod& rod, std::size_t cell, double xi) const {
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  ContactNode ends[2];
-  ends[0].p = position_of(nodes[cell]);
-  if (xi == 0) return ends[0].p;
-  ends[0].t = rotation_of(nodes[cell]).col(2);
-  ends[1].p = position_of(nodes[cell + 1]);
-  ends[1].t = rotation_of(nodes[cell + 1]).col(2);
-  return contact_point(xi, length(rod, cell), ends);
-}
-
-Distance RodContacts::distance(const Rod& rod, std::size_t obstacle, std::size_t cell,
-                               double xi) const {
-  const Surface& surface = rod.obstacles[obstacle].surface;
-  return distance_to(*surface.shape, surface.X_WC, point(rod, cell, xi));
-}
-
-Vec3 RodContacts::tangent(const Rod& rod, std::size_t cell, double xi) const {
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  const bool end = cell + 1 == nodes.size();
-  return rotation_of(nodes[end || xi < 0.5 ? cell : cell + 1]).col(2);
-}
-
-/// Whether a surface does not curve away along the rod: contact is a line there, not a point.
-bool RodContacts::flat(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const {
-  const Vec3 t = tangent(rod, cell, xi);
-  const std::size_t last = rod.side->contact_nodes().size() - 2;
-  return t.dot(distance(rod, obstacle, cell, xi).H * t) * length(rod, std::min(cell, last)) < kFlat;
-}
-
-// Samples, then golden section around the lowest.
-double RodContacts::lowest(const Rod& rod, std::size_t obstacle, std::size_t cell,
-                           double& xi) const {
-  constexpr int kSamples = 8;
-  constexpr double kGolden = 0.3819660112501051;
-  const auto depth = [&](double at) { return distance(rod, obstacle, cell, at).d; };
-  double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kSamples; ++i) {
-    const double at = static_cast<double>(i) / kSamples, d = depth(at);
-    if (d >= best) continue;
-    best = d;
-    xi = at;
-  }
-  double a = std::max(0.0, xi - 1.0 / kSamples), b = std::min(1.0, xi + 1.0 / kSamples);
-  double x1 = a + kGolden * (b - a), x2 = b - kGolden * (b - a), d1 = depth(x1), d2 = depth(x2);
-  // a minimum is known to the square root of round-off
-  while (b - a > 1e-7) {
-    if (d1 < d2) {
-      b = x2;
-      x2 = x1;
-      d2 = d1;
-      d1 = depth(x1 = a + kGolden * (b - a));
-    } else {
-      a = x1;
-      x1 = x2;
-      d1 = d2;
-      d2 = depth(x2 = b - kGolden * (b - a));
-    }
-  }
-  if (std::min(d1, d2) < best) {
-    best = std::min(d1, d2);
-    xi = d1 < d2 ? x1 : x2;
-  }
-  return best;
-}
-
-double RodContacts::moved(const Rod& rod, const Scan& since) const {
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  if (since.nodes.size() != nodes.size()) return std::numeric_limits<double>::infinity();
-  double most = 0;
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    most = std::max(most, (position_of(nodes[k]) - since.nodes[k]).squaredNorm());
-  return std::sqrt(most);
-}
-
-// Twice, since a cell between its ends moves with their tangents too.
-bool RodContacts::far_away(const Rod& rod) const {
-  return rod.side->contacts().empty() && 2 * moved(rod, rod.scan) < rod.scan.clearance;
-}
-
-void RodContacts::scan(Rod& rod) const {
-  Scan& out = rod.scan;
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  out.nodes.clear();
-  for (const NodeState& node : nodes)
-    out.nodes.emplace_back(position_of(node));
-  out.cells.assign(nodes.size() - 1, {});
-  out.clearance = std::numeric_limits<double>::infinity();
-  for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
-    Near& near = out.cells[c];
-    near.distance = std::numeric_limits<double>::infinity();
-    for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
-      // a distance changes no faster than one walks
-      double d = 0.5 * (distance(rod, o, c, 0).d +
-                        distance_to(*rod.obstacles[o].surface.shape, rod.obstacles[o].surface.X_WC,
-                                    position_of(nodes[c + 1]))
-                            .d -
-                        1.1 * length(rod, c));
-      double xi = 0.5;
-      if (d < rod.radius) d = lowest(rod, o, c, xi);
-      out.clearance = std::min(out.clearance, d - rod.radius);
-      if (d >= near.distance) continue;
-      near = {d, distance(rod, o, c, xi).n, !rod.obstacles[o].plane};
-    }
-  }
-}
-
-/// What a joint holds cannot be pushed.
-bool RodContacts::held(const Rod& rod, std::size_t node) const {
-  return (node == 0 && rod.rod->base_held) ||
-         (node + 1 == rod.side->contact_nodes().size() && rod.rod->tip_held);
-}
-
-RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::size_t cell,
-                                    double xi) const {
-  RodContact contact;
-  contact.surface = static_cast<int>(obstacle);
-  contact.cell = cell;
-  contact.xi = xi;
-  contact.friction = rod.obstacles[obstacle].friction;
-  contact.grip = contact.friction > 0 ? Grip::kStick : Grip::kSmooth;
-  contact.lever = -rod.radius * distance(rod, obstacle, cell, xi).n;
-  contact.axis = tangent(rod, cell, xi);
-  return contact;
-}
-
-// To where the rod is nearest now, along its cell or on to the next; points on a plane stay at
-// their nodes. @return whether it was elsewhere
-bool RodContacts::slide(const Rod& rod, RodContact& contact) const {
-  const auto obstacle = static_cast<std::size_t>(contact.surface);
-  const std::size_t cells = rod.side->contact_nodes().size() - 1;
-  std::size_t cell = contact.cell;
-  double xi = contact.xi;
-  if (contact.at_node()) {
-    if (flat(rod, obstacle, cell, 0)) return false;
-    double left_xi = 0, right_xi = 0;
-    const double inf = std::numeric_limits<double>::infinity();
-    const double left = cell > 0 ? lowest(rod, obstacle, cell - 1, left_xi) : inf;
-    const double right = cell < cells ? lowest(rod, obstacle, cell, right_xi) : inf;
-    if (left < right) --cell;
-    xi = left < right ? left_xi : right_xi;
-    if (xi < kEdge || xi > 1 - kEdge) return false;
-  } else {
-    lowest(rod, obstacle, cell, xi);
-    if (xi > 1 - kEdge / 2 && cell + 1 < cells) {
-      ++cell;
-      xi = kEdge;
-    } else if (xi < kEdge / 2 && cell > 0) {
-      --cell;
-      xi = 1 - kEdge;
-    }
-    xi = std::clamp(xi, kEdge, 1.0);
-  }
-  const double by = static_cast<double>(cell) + xi - static_cast<double>(contact.cell) - contact.xi;
-  contact.cell = cell;
-  contact.xi = xi;
-  return std::abs(by) * length(rod, cell) > kSlide * rod.radius;
-}
-
-/// Moves a contact to where the rod now is nearest. @return whether it was elsewhere
-bool RodContacts::follow(const Rod& rod, RodContact& contact, const ContactRows& rows) const {
-  const Vec3 lever = -rod.radius * rows.at.n;
-  const bool turned = contact.friction > 0 && (lever - contact.lever).norm() > 1e-6 * rod.radius;
-  contact.lever = lever;
-  contact.axis = tangent(rod, contact.cell, contact.xi);
-  if (contact.grip == Grip::kSlip) {
-    // slip and force weigh the same in the direction of friction
-    const double rate = rows.slip.norm(), force = contact.force.norm();
-    if (rate > 0 && force > 0) contact.kappa = std::max(1.0, force / rate);
-  }
-  return slide(rod, contact) || turned;
-}
-
 // Of neighbours that pull, only the hardest lets go: the others may press once it has.
 bool RodContacts::pulls_most(const Rod& rod, std::size_t contact) const {
   const std::vector<RodContact>& contacts = rod.side->contacts();
@@ -285,52 +95,6 @@ void RodContacts::review(std::size_t index, std::vector<Change>& changes) const 
       continue;
     }
     changes.push_back(change);
-  }
-}
-
-// New points: the lowest between two nodes, or a node that is not above what its cells' lowest are.
-// On a flat face all nodes that sank: they will lie on it in a line.
-void RodContacts::search(std::size_t index, std::vector<Change>& changes) const {
-  const Rod& rod = rods_[index];
-  const std::vector<RodContact>& contacts = rod.side->contacts();
-  const double noticed = rod.radius * (1 - kNotice), fine = kNotice * rod.radius;
-  const std::size_t cells = rod.scan.cells.size();
-  const auto beside = [&](std::size_t node) {
-    return std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
-      const double at = static_cast<double>(contact.cell) + contact.xi;
-      return std::abs(at - static_cast<double>(node)) < kBeside;
-    });
-  };
-  const auto taken = [&](std::size_t cell) {
-    return std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
-      return contact.cell == cell || (contact.at_node() && contact.cell == cell + 1);
-    });
-  };
-  const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {
-    changes.push_back(
-        {(rod.radius - d) / rod.radius, index, -1, false, new_contact(rod, o, cell, xi)});
-  };
-  std::vector<double> xi(cells), low(cells);
-  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
-    for (std::size_t c = 0; c < cells; ++c) {
-      low[c] = std::numeric_limits<double>::infinity();
-      if (rod.scan.cells[c].distance < noticed) low[c] = lowest(rod, o, c, xi[c]);
-    }
-    for (std::size_t k = 0; k <= cells; ++k) {
-      const std::size_t left = k > 0 ? k - 1 : 0, right = std::min(k, cells - 1);
-      const double below = std::min(low[left], low[right]);
-      const double d = below < noticed
-                           ? (k < cells ? distance(rod, o, k, 0).d : distance(rod, o, k - 1, 1).d)
-                           : noticed;
-      const bool lowest_here = d < below + fine || (d < noticed && flat(rod, o, k, 0));
-      if (d < noticed && lowest_here && !held(rod, k) && !beside(k)) add(o, k, 0, d);
-    }
-    for (std::size_t c = 0; c < cells; ++c) {
-      const bool inside = xi[c] > kEdge && xi[c] < 1 - kEdge;
-      if (!(low[c] < noticed) || !inside) continue;
-      const double ends = std::min(distance(rod, o, c, 0).d, distance(rod, o, c, 1).d);
-      if (low[c] < ends - fine && !taken(c)) add(o, c, xi[c], low[c]);
-    }
   }
 }
 
@@ -382,14 +146,15 @@ bool RodContacts::revise(int round) {
 }
 
 bool RodContacts::touching() const {
-  return std::any_of(rods_.begin(), rods_.end(),
-                     [](const Rod& rod) { return !rod.side->contacts().empty(); });
+  return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return touches(rod); });
 }
 
 void RodContacts::begin_step() {
   for (Rod& rod : rods_) {
     rod.before = rod.side->contacts();
-    if (!far_away(rod) || moved(rod, rod.scan) > 0) scan(rod);
+    // while a rod is far away, the distances of an older scan will do
+    if (rod.scan.nodes.empty() || touches(rod) || 8 * moved(rod, rod.scan) >= rod.scan.clearance)
+      scan(rod);
     rod.start = rod.scan;
   }
 }

@@ -95,6 +95,8 @@ class RodContacts {
     RodContact contact;
   };
 
+  static bool touches(const Rod& rod) { return !rod.side->contacts().empty(); }
+
   double length(const Rod& rod, std::size_t cell) const;
   Vec3 point(const Rod& rod, std::size_t cell, double xi) const;
   Distance distance(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/robot/contacts.h"
 #include "engine/run/observation.h"
 #include "engine/solve/newton.h"
 
@@ -45,11 +46,21 @@ Parameter parameter_of(const Scene& scene, std::size_t index) {
   return p;
 }
 
+/// Where rods touch obstacles, equilibria depend on how they are reached.
+void refuse_contacts(const Scene& scene) {
+  Robot robot = build_robot(scene);
+  if (RodContacts(robot).any())
+    throw std::invalid_argument(
+        "rods may touch obstacles in this scene, which studies of equilibria do not see: simulate "
+        "it, or leave contact out of its effects");
+}
+
 }  // namespace
 
 StaticStudy::StaticStudy(Scene scene, double at, const std::vector<ProbeWrench>& probes)
     : scene_(std::make_unique<Scene>(std::move(scene))),
       tolerance_(scene_->solver.residual_tolerance.value_or(1e-10)) {
+  refuse_contacts(*scene_);
   for (DriveSpec& drive : scene_->drives) {
     // a velocity drive says nothing about where a joint rests: it holds the scene's own position
     const bool velocity = drive.quantity == DriveQuantity::kVelocity;

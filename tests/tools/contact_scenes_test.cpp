@@ -20,8 +20,8 @@ const fs::path kScenes = fs::path(CPRSIM_SOURCE_DIR) / "scenes/contact";
 int run(const fs::path& scene, const std::string& options = "") {
   const ScratchFolder folder;
   const std::string command = std::string(CPRSIM_BINARY_DIR) + "/bin/cprsim " + scene.string() +
-                              " --no-video -o " + (folder / "out").string() + " " +
-                              options + " > /dev/null 2>&1";
+                              " --no-video -o " + (folder / "out").string() + " " + options +
+                              " > /dev/null 2>&1";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step after another: time steps, and equilibria where nothing has inertia.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/run/simulation_parts.h"
+
+namespace cprsim {
+namespace {
+
+// Steps of backward Euler from a change of contact on: the change itself, one that takes the
+// velocity into the obstacle out, one that takes its acceleration out; and their size over that of
+// the largest step where the scheme chooses it.
+constexpr int kCushionedSteps = 3;
+constexpr double kCushion = 0.1;
+
+}  // namespace
+
+// PI control (Söderlind, ACM TOMS 29, 2003) with the usual limits.
+double Simulation::Parts::controlled(double step, double error) const {
+  const double k = marcher.error_order();
+  const double now_ratio = plan.tolerance / std::max(error, 1e-14);
+  const double old_ratio =
+      last_error > 0 ? plan.tolerance / std::max(last_error, 1e-14) : now_ratio;
+  const double factor = 0.9 * std::pow(now_ratio, 0.7 / k) * std::pow(old_ratio, -0.4 / k) *
+                        std::pow(now_ratio, 0.3 / k);
+  return step * std::clamp(factor, 0.2, 4.0);
+}
+
+void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outcome& outcome) {
+  marcher.accept();
+  t = t_new;
+  report = outcome.report;
+  count(report);
+  if (free_bodies) free_bodies->advance(h_used, link_motions(robot, free_bodies.get()));
+  ledger.close_step(t, outcome.damping_loss, outcome.drive_work, cushioned > 0);
+  ++statistics.steps;
+  statistics.largest_step = std::max(statistics.largest_step, h_used);
+  statistics.smallest_step =
+      statistics.steps == 1 ? h_used : std::min(statistics.smallest_step, h_used);
+  if (t >= end) status = RunStatus::kDone;
+}
+
+// After a cushioned step: on with it where contacts still change, else back to the scheme.
+void Simulation::Parts::soften(bool touched) {
+  cushioned = touched ? kCushionedSteps : cushioned - 1;
+  if (cushioned > 0) return;
+  marcher.cushion(false);
+  last_error = 0;
+  if (plan.adaptive) h = std::min(h, 1e-3);
+}
+
+/// Whether a step must be taken again for the sake of contacts: shorter, or cushioned.
+bool Simulation::Parts::contacts_object(const Marcher::Outcome& outcome, double step,
+                                        double& target) {
+  const bool impact = outcome.converged && outcome.touched && cushioned == 0;
+  if (!outcome.leapt && !impact) return false;
+  marcher.reject();
+  ++statistics.rejected;
+  if (outcome.leapt) {
+    target = 0.5 * step;
+    return true;
+  }
+  marcher.cushion(true);
+  cushioned = kCushionedSteps;
+  if (plan.adaptive) target = std::min(target, kCushion * scene.max_step_size);
+  return true;
+}
+
+void Simulation::Parts::step_dynamic() {
+  const int retries = scene.solver.halve_on_failure ? scene.solver.retries : 0;
+  const double stop = next_break();
+  ledger.begin_step(t);
+  double target = h;
+  if (plan.adaptive && (free_bodies || contacts.touching()))
+    target = std::min(target, scene.max_step_size);
+  for (int failures = 0;; ++failures) {
+    const double left = stop - t;
+    // land on the break; in adaptive mode without leaving a sliver
+    double step = target >= left * (1 - 1e-9) ? left : target;
+    if (plan.adaptive && step < left && left < 2 * step) step = 0.5 * left;
+    const Marcher::Outcome outcome = marcher.attempt(t, step, ledger);
+    if (contacts_object(outcome, step, target)) {
+      failures = -1;
+      if (target > 1e-12 * std::max(1.0, end)) continue;
+      failure = "a rod would pass through an obstacle at t = " + short_number(t) + " s";
+      status = RunStatus::kFailed;
+      return;
+    }
+    if (outcome.converged && (!plan.adaptive || outcome.error <= plan.tolerance)) {
+      const bool landed = step == left;
+      if (plan.adaptive && cushioned == 0) {
+        const double next = controlled(step, outcome.error);
+        h = landed && step < 0.5 * target ? std::max(target, next) : next;
+        last_error = outcome.error;
+      }
+      arrive(landed ? stop : t + step, step, outcome);
+      if (cushioned > 0) soften(outcome.touched);
+      if (landed && t < end) {
+        marcher.restart();
+        last_error = 0;
+        if (plan.adaptive) h = std::min(h, 1e-3);
+      }
+      return;
+    }
+    marcher.reject();
+    if (outcome.converged) {
+      ++statistics.rejected;
+      failures = -1;
+      target = controlled(step, outcome.error);
+      last_error = 0;
+      if (target > 1e-12 * std::max(1.0, end)) continue;
+    }
+    report = outcome.report;
+    if (failures >= retries || target <= 1e-12 * std::max(1.0, end)) {
+      fail("step failed at t = " + short_number(t) + " s with a step of " + short_number(step) +
+           " s");
+      return;
+    }
+    ++statistics.retried;
+    target = 0.5 * step;
+  }
+}
+
+void Simulation::Parts::step_quasistatic() {
+  const double stop = next_break();
+  double target = plan.step;
+  const RobotUnknowns start = equations.unknowns();
+  const double from = t, power = ledger.drive_power(t, false);
+  ledger.begin_step(t);
+  for (int failures = 0;; ++failures) {
+    const double step = std::min(target, stop - from);
+    t = step >= (stop - from) * (1 - 1e-9) ? stop : from + step;
+    equations.set_instant(t, true, StageRates{});
+    const SolveOptions options = static_options(scene.solver);
+    contacts.begin_step();
+    report = newton(equations, options);
+    if (!report.converged()) {
+      equations.set_unknowns(start);
+      report = levenberg_marquardt(equations, options);
+    }
+    if (contacts.any()) report = settle_contacts(contacts, equations, options, report);
+    count(report);
+    if (report.converged() && !contacts.leapt()) {
+      start_motion();
+      equations.accept_equilibrium(t);
+      ledger.close_step(t, 0,
+                        0.5 * step * (power + ledger.drive_power(t, true)) + ledger.effort_work(t));
+      ++statistics.steps;
+      if (t >= end) status = RunStatus::kDone;
+      return;
+    }
+    equations.set_unknowns(start);
+    t = from;
+    if (failures >= scene.solver.retries) {
+      fail("no equilibrium found beyond t = " + short_number(from) + " s");
+      return;
+    }
+    ++statistics.retried;
+    target = 0.5 * step;
+  }
+}
+
+}  // namespace cprsim
