@@ -18,6 +18,7 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   const SectionProperties& s = rod.section;
   const double L = rod.length, EI = std::min(s.K_bt.x(), s.K_bt.y());
   f.name = rod.spec->name;
+  f.length = L;
   f.mass = s.rhoA * L;
   f.bending_x = s.K_bt.x();
   f.bending_y = s.K_bt.y();

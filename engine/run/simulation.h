@@ -38,7 +38,8 @@ struct RunStatistics {
 /// Per-rod facts for `info` and run.json.
 struct RodFacts {
   std::string name;
-  double mass = 0, bending_x = 0, bending_y = 0, torsion = 0, axial = 0, shear_x = 0;
+  double length = 0, mass = 0;
+  double bending_x = 0, bending_y = 0, torsion = 0, axial = 0, shear_x = 0;
   double first_frequency = 0;  ///< Hz, as a cantilever
   double buckling_load = 0;    ///< N, clamped-free Euler load of the weaker plane
   double growth_exponent = 0;  ///< design section 5, at the step used

@@ -31,6 +31,7 @@ Examples
   cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0
   cprsim identify scene.xml tips.csv --fit rod/material/youngs_modulus
   cprsim workspace scene.xml --random 1000  what drives reach: stable, within limits
+  cprsim compare out/planar measured.csv    RMS, maximum, lag, a picture
 
 Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
@@ -41,6 +42,7 @@ Commands
   path                     equilibria through folds and branch points
   identify                 fit values of a scene to measurements
   workspace                what a robot reaches: a sweep of drives or poses
+  compare                  a run against a reference trajectory
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -69,6 +71,7 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"path", path_command},
                                Command{"workspace", workspace_command},
                                Command{"identify", identify_command},
+                               Command{"compare", compare_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};
 

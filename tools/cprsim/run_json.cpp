@@ -61,6 +61,7 @@ Json effects_json(const Scene& scene) {
 
 Json rod_json(const RodFacts& rod) {
   return {{"name", rod.name},
+          {"length", rod.length},
           {"mass", rod.mass},
           {"stiffness",
            {{"bending_x", rod.bending_x},
