@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -230,20 +229,18 @@ int info_command(const Words& words) {
   std::string path;
   SceneOptions options;
   ConsoleOptions console_options;
-  CLI::App app(
+  CommandLine line(
+      "cprsim info",
       "Tells what is in a scene and what follows from it, without simulating: stiffness, mass, "
       "first\n"
       "frequency, growth exponents, the effects that are on and those that would matter.\n\n"
       "Examples\n"
       "  cprsim info scene.xml\n"
-      "  cprsim info scene.xml --step 0.001 --json",
-      "cprsim info");
-  app.add_option("SCENE", path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  add_scene_options(app, options);
-  add_console_options(app, console_options);
-  if (const auto code = parse(app, words)) return *code;
+      "  cprsim info scene.xml --step 0.001 --json");
+  line.scene(path);
+  add_scene_options(line, options);
+  add_console_options(line, console_options);
+  if (const auto code = line.parse(words)) return *code;
 
   const Console console(console_options);
   const LoadedScene loaded = load_and_show(path, options, console);

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
@@ -46,7 +45,8 @@ struct Solved {
 };
 
 std::optional<int> read_words(SolveWords& w, const Words& words) {
-  CLI::App app(
+  CommandLine line(
+      "cprsim solve",
       "Finds the robot's equilibrium and says whether it is stable. With a pose, finds the drives "
       "that lead there;\nwith measured channels and an unknown wrench, the wrench that explains "
       "them.\n\n"
@@ -56,33 +56,25 @@ std::optional<int> read_words(SolveWords& w, const Words& words) {
       "  cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0\n"
       "  cprsim solve scene.xml --pose 'robot::platform=0.02,0,0.39,*,*,0' --free "
       "robot::leg_1,...\n"
-      "  cprsim solve scene.xml --unknown-wrench robot::platform --measured CHANNEL=VALUE ...",
-      "cprsim solve");
-  app.add_option("SCENE", w.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  const auto many = [&](const char* name, std::vector<std::string>& list, const char* help,
-                        const char* type) {
-    app.add_option(name, list, help)->type_name(type)->allow_extra_args(false);
-  };
-  many("--drive", w.drives, "Sets a drive: m, rad, N, N m; angles may end in deg", "NAME=VALUE");
-  many("--pose", w.poses, "Prescribes a link's or frame's pose; * leaves a freedom open",
-       "NAME=X,Y,Z[,R,P,Y]");
-  app.add_option("--free", w.free, "Drives that --pose may change (default all)")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->allow_extra_args(false);
-  many("--wrench", w.wrenches, "Force (and torque) at a link's or frame's origin, world axes",
-       "NAME=FX,FY,FZ[,TX,TY,TZ]");
-  app.add_option("--unknown-wrench", w.unknown_wrench, "Estimates the wrench on this link or frame")
-      ->type_name("NAME");
-  many("--measured", w.measured, "What a channel reads, for --unknown-wrench", "CHANNEL=VALUE");
-  many("--channel", w.channels, "Also prints these channels (with * globs)", "PATTERN");
-  add_number(app, "--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
-             [](double t) { return t >= 0; });
-  add_scene_options(app, w.scene);
-  add_console_options(app, w.console);
-  return parse(app, words);
+      "  cprsim solve scene.xml --unknown-wrench robot::platform --measured CHANNEL=VALUE ...");
+  line.scene(w.path);
+  line.texts("--drive", w.drives, "NAME=VALUE",
+             "Sets a drive: m, rad, N, N m; angles may end in deg");
+  line.texts("--pose", w.poses, "NAME=X,Y,Z[,R,P,Y]",
+             "Prescribes a link's or frame's pose; * leaves a freedom open");
+  line.list("--free", w.free, "NAMES", "Drives that --pose may change (default all)");
+  line.texts("--wrench", w.wrenches, "NAME=FX,FY,FZ[,TX,TY,TZ]",
+             "Force (and torque) at a link's or frame's origin, world axes");
+  line.text("--unknown-wrench", w.unknown_wrench, "NAME",
+            "Estimates the wrench on this link or frame");
+  line.texts("--measured", w.measured, "CHANNEL=VALUE",
+             "What a channel reads, for --unknown-wrench");
+  line.texts("--channel", w.channels, "PATTERN", "Also prints these channels (with * globs)");
+  line.number("--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
+              [](double t) { return t >= 0; });
+  add_scene_options(line, w.scene);
+  add_console_options(line, w.console);
+  return line.parse(words);
 }
 
 Goal goal_of(const SolveWords& w, const StaticStudy& study) {
