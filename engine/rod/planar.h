@@ -59,6 +59,10 @@ class PlanarRod final : public RodModel {
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
 
+  RodResolution resolution() const override {
+    return {Method::kShooting, table_->name, cells_, table_->order};
+  }
+
   int cells() const override { return cells_; }
 
   int segments() const override { return static_cast<int>(segment_first_.size()) - 1; }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/math/types.h"
+#include "engine/model/solver_spec.h"
 #include "engine/rod/field.h"
 #include "engine/rod/rod_end.h"
 #include "engine/rod/shape.h"
@@ -68,6 +69,14 @@ struct RodEnergy {
   double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping
   double feed_power =
       0;  ///< W, brought in per unit feed rate of the length drive (N): see shooting.cpp
+};
+
+/// How finely a rod is cut, in the words of its method.
+struct RodResolution {
+  Method method = Method::kShooting;
+  const char* rule = "";  ///< of the pieces: table, polynomials, splines
+  int elements = 0;       ///< pieces along the rod
+  int order = 0;          ///< of the table, or degree of the functions
 };
 
 class RodModel {
@@ -135,7 +144,8 @@ class RodModel {
   virtual RodEnergy energy() const = 0;
   virtual std::string row_name(int row) const = 0;
 
-  virtual int cells() const = 0;
+  virtual RodResolution resolution() const = 0;
+  virtual int cells() const = 0;  ///< pieces that are swept one after another
   virtual int segments() const = 0;
   virtual int unknown_count() const = 0;
   virtual long section_evaluations() const = 0;

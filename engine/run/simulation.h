@@ -43,12 +43,16 @@ struct RodFacts {
   double first_frequency = 0;  ///< Hz, as a cantilever
   double buckling_load = 0;    ///< N, clamped-free Euler load of the weaker plane
   double growth_exponent = 0;  ///< design section 5, at the step used
-  int cells = 0, segments = 0, unknowns = 0;
+  Method method = Method::kShooting;
+  std::string method_reason;
+  std::string rule;             ///< of its pieces: "gauss6", "legendre"
+  int elements = 0, order = 0;  ///< pieces, and the order of the rule
+  int segments = 0, unknowns = 0;
   double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
 };
 
 struct ProblemFacts {
-  std::string integrator, scheme;
+  std::string scheme;
   bool planar = false;  ///< of the kernel: everything moves in a plane
   double step = 0;      ///< fixed step, or 0 when adaptive
   int body_unknowns = 0, constraint_unknowns = 0;

@@ -36,6 +36,9 @@ Vec3 vec3_of(const Node* node, const Vec3& fallback);
 double number_attribute(const Node& node, std::string_view key, double fallback);
 std::optional<double> optional_number(const Node& node, std::string_view key);
 
+/// Of a solver, a rod or a rod class.
+std::optional<Method> method_attribute(const Node& node);
+
 void read_settings(Reading& reading, const Node& world);  // gravity, physics, effects, simulation
 void read_bodies(Reading& reading, const Node& world);    // links
 void read_joints(Reading& reading, const Node& world);    // rigid joints

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/rod/make_rod.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/rod/planar.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+namespace {
+
+// Measured on the published Stewart-Gough robot (rods bent by about a radian): N cells of gauss6
+// leave an error of 3.4e-8 L (6 / N)^6. An accuracy asked for gets ten times less; without one, 6
+// cells. Other integrators are there to be compared with and get cells for about the same cost. The
+// error depends on how far a cell turns: a rod wound up by `turn` > 1 rad gets as many times more.
+int default_cells(ArcIntegrator integrator, const std::optional<double>& accuracy, double length,
+                  double turn) {
+  const double winding = std::max(1.0, turn);
+  double cells = integrator == ArcIntegrator::kGauss6 ? 6 : 12;
+  if (integrator == ArcIntegrator::kGauss6 && accuracy)
+    cells = std::clamp(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6)), 3.0, 60.0);
+  return static_cast<int>(std::clamp(std::ceil(cells * winding), 3.0, 600.0));
+}
+
+ShootingOptions shooting_options(const RodPlan& plan) {
+  ShootingOptions o;
+  const double length = plan.spec->length;
+  o.integrator = plan.solver->integrator.value_or(kDefaultIntegrator);
+  o.cells = plan.solver->points.value_or(default_cells(o.integrator, plan.solver->accuracy, length,
+                                                       length * plan.section.u_rest.norm()));
+  o.extension = plan.extension;
+  o.shear = plan.shear;
+  o.rotary_inertia = plan.rotary_inertia;
+  o.damping = plan.damping;
+  o.stations = plan.stations;
+  return o;
+}
+
+PlanarHold hold_of(const RodPlan& plan, const RodEndSpec& end, const Pose& X_WE) {
+  const std::optional<PlanarHold> hold = planar_hold(end, X_WE.R.transpose() * plan.plane->col(2));
+  if (!hold)
+    throw std::invalid_argument("a joint of rod '" + plan.spec->name +
+                                "' turns neither about the plane's normal nor across it");
+  return *hold;
+}
+
+std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
+  const RodSpec& spec = *plan.spec;
+  if (plan.plane) {
+    const bool by_tip = holds_spin(spec.tip) && !holds_spin(spec.base);
+    return std::make_unique<PlanarRod>(spec.name, hold_of(plan, spec.base, plan.X_WBase),
+                                       hold_of(plan, spec.tip, plan.X_WTip), *plan.plane,
+                                       plan.X_WBase, by_tip ? plan.X_WTip.R : plan.X_WBase.R,
+                                       plan.section, plan.length, shooting_options(plan));
+  }
+  auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
+                                             plan.section, plan.length, shooting_options(plan));
+  model->set_unloaded(plan.X_WBase);
+  return model;
+}
+
+}  // namespace
+
+MethodChoice choose_method(const RodSpec& rod, const SolverSpec& solver) {
+  if (rod.method && *rod.method != Method::kAuto) return {*rod.method, "the rod asks for it"};
+  if (!rod.method && solver.method != Method::kAuto)
+    return {solver.method, "the solver asks for it"};
+  return {Method::kShooting, "auto"};
+}
+
+std::unique_ptr<RodModel> make_rod(Method method, const RodPlan& plan) {
+  switch (method) {
+    case Method::kAuto:
+    case Method::kShooting:
+      return make_shooting(plan);
+    case Method::kStrain:
+    case Method::kCollocation:
+      break;
+  }
+  throw std::invalid_argument("rod '" + plan.spec->name +
+                              "': this method is not available in this version; take shooting");
+}
+
+}  // namespace cprsim
