@@ -24,6 +24,11 @@ VecX solve_symmetric(const MatX& N, const VecX& b);
 /// Solution of A X = B by LU with partial pivoting; A must be regular.
 MatX solve_columns(const MatX& A, const MatX& B);
 
+/// All x with A x + B y = 0 for A with fewer rows than columns, by elimination with complete
+/// pivoting: x = X [z; y], where z are the entries of x that no pivot was taken for.
+/// @return false if the rows of A are dependent.
+bool general_solution(const MatX& A, const MatX& B, MatX& X);
+
 bool is_positive_definite(const MatX& A);
 
 /// Smallest over largest singular value; 0 for an empty matrix.

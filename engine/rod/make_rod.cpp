@@ -5,8 +5,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "engine/math/so3.h"
 #include "engine/rod/planar.h"
 #include "engine/rod/shooting.h"
+#include "engine/rod/strain_basis.h"
 
 namespace cprsim {
 namespace {
@@ -46,19 +48,49 @@ PlanarHold hold_of(const RodPlan& plan, const RodEndSpec& end, const Pose& X_WE)
   return *hold;
 }
 
+/// Section axes in a plane, up to a turn in it: those of the end that holds the rod's spin.
+Mat3 spin_frame(const RodPlan& plan) {
+  const bool by_tip = holds_spin(plan.spec->tip) && !holds_spin(plan.spec->base);
+  return by_tip ? plan.X_WTip.R : plan.X_WBase.R;
+}
+
+/// The unloaded rod's beginning in a plane: spun like spin_frame(), tangent as at the base.
+Pose section_frame(const RodPlan& plan) {
+  const Mat3 R = spin_frame(plan);
+  return {rotation_between(R.col(2), plan.X_WBase.R.col(2)) * R, plan.X_WBase.p};
+}
+
 std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   if (plan.plane) {
-    const bool by_tip = holds_spin(spec.tip) && !holds_spin(spec.base);
     return std::make_unique<PlanarRod>(spec.name, hold_of(plan, spec.base, plan.X_WBase),
                                        hold_of(plan, spec.tip, plan.X_WTip), *plan.plane,
-                                       plan.X_WBase, by_tip ? plan.X_WTip.R : plan.X_WBase.R,
-                                       plan.section, plan.length, shooting_options(plan));
+                                       plan.X_WBase, spin_frame(plan), plan.section, plan.length,
+                                       shooting_options(plan));
   }
   auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
                                              plan.section, plan.length, shooting_options(plan));
   model->set_unloaded(plan.X_WBase);
   return model;
+}
+
+std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
+  const RodSpec& spec = *plan.spec;
+  StrainOptions o;
+  o.order = plan.solver->order.value_or(o.order);
+  o.elements = plan.solver->elements.value_or(o.elements);
+  o.extension = plan.extension;
+  o.shear = plan.shear;
+  o.rotary_inertia = plan.rotary_inertia;
+  o.damping = plan.damping;
+  o.stations = plan.stations;
+  if (!plan.plane)
+    return std::make_unique<StrainRod>(spec.name, EndCondition(spec.base), EndCondition(spec.tip),
+                                       plan.plane, plan.X_WBase, plan.section, plan.length, o);
+  const EndCondition base(hold_of(plan, spec.base, plan.X_WBase), *plan.plane),
+      tip(hold_of(plan, spec.tip, plan.X_WTip), *plan.plane);
+  return std::make_unique<StrainRod>(spec.name, base, tip, plan.plane, section_frame(plan),
+                                     plan.section, plan.length, o);
 }
 
 }  // namespace
@@ -76,6 +108,7 @@ std::unique_ptr<RodModel> make_rod(Method method, const RodPlan& plan) {
     case Method::kShooting:
       return make_shooting(plan);
     case Method::kStrain:
+      return make_strain(plan);
     case Method::kCollocation:
       break;
   }
