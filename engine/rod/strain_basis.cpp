@@ -44,7 +44,7 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   points_.resize(points);
   b_.assign(points, Vec3::Zero());
   nodes_.resize(grid_.size());
-  Omega_.resize(elements() * rule_.steps.size());
+  turns_.resize(elements() * rule_.steps.size());
   const auto strains = options.damping ? q_.size() * static_cast<std::size_t>(q_[0].size()) : 0;
   track_.resize(static_cast<Eigen::Index>(3 * (points + nodes_.size()) + strains));
   if (options.rotary_inertia) {
@@ -184,12 +184,22 @@ Vec3 StrainRod::strain(std::size_t element, const Eigen::Ref<const VecX>& phi, b
 }
 
 // (2)
-Mat3 StrainRod::turn(std::size_t element, const StrainRule::Step& step, Vec3& Omega) const {
+StrainRod::Turn StrainRod::turn(std::size_t element, const StrainRule::Step& step,
+                                const Mat3& R_start) const {
   Mat3 u;
   for (Eigen::Index g = 0; g < 3; ++g)
     u.col(g) = strain(element, step.phi.col(g), true);
-  Omega = magnus_step(step.fraction * length_of(element), u);
-  return exp_so3(Omega);
+  const Vec3 Omega = magnus_step(step.fraction * length_of(element), u);
+  return {Omega, R_start * exp_so3(Omega)};
+}
+
+Mat3 StrainRod::cross_gap(std::size_t element, std::size_t gap, Mat3 R) {
+  for (std::size_t k = gap * rule_.per_gap; k < (gap + 1) * rule_.per_gap; ++k) {
+    Turn& done = turns_[element * rule_.steps.size() + k];
+    done = turn(element, rule_.steps[k], R);
+    R = done.R_end;
+  }
+  return R;
 }
 
 void StrainRod::evaluate_rotary_inertia(std::size_t point) {
@@ -211,13 +221,12 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
   const double h = length_of(e);
   const VecX& w = rule_.gauss.weights;
   StrainPoint* const point = &points_[e * static_cast<std::size_t>(G)];
-  Vec3* const Omega = &Omega_[e * rule_.steps.size()];
   Mat3 R = rotation_of(state);
   const Vec3 p0 = position_of(state), n0 = force_of(state), m0 = moment_of(state);
   Vec3 p_end = p0, n_end = n0, m_end = m0;
   std::vector<Vec3> n_s(static_cast<std::size_t>(G)), m_s(n_s);
   for (Eigen::Index i = 0; i < G; ++i) {
-    R = R * turn(e, rule_.steps[static_cast<std::size_t>(i)], Omega[i]);
+    R = cross_gap(e, static_cast<std::size_t>(i), R);
     point[i].R = R;
     point[i].u = strain(e, rule_.phi.col(i), true);
     point[i].v = strain(e, rule_.phi.col(i), false);
@@ -248,8 +257,7 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
   }
   for (Eigen::Index i = 0; i < G; ++i)
     point[i].m = m0 + integral(i, [&](Eigen::Index j) { return m_s[static_cast<std::size_t>(j)]; });
-  R = R * turn(e, rule_.steps.back(), Omega[G]);
-  Eigen::Map<RowMatrix>(state.R) = R;
+  Eigen::Map<RowMatrix>(state.R) = cross_gap(e, static_cast<std::size_t>(G), R);
   Eigen::Map<Vec3>(state.p) = p_end;
   Eigen::Map<Vec3>(state.n) = n_end;
   Eigen::Map<Vec3>(state.m) = m_end;

@@ -145,7 +145,13 @@ class StrainRod final : public RodModel {
   }
 
   // the sweep
-  Mat3 turn(std::size_t element, const StrainRule::Step& step, Vec3& Omega) const;
+  struct Turn {
+    Vec3 Omega;
+    Mat3 R_end;
+  };
+
+  Turn turn(std::size_t element, const StrainRule::Step& step, const Mat3& R_start) const;
+  Mat3 cross_gap(std::size_t element, std::size_t gap, Mat3 R);
   void evaluate_element(std::size_t element, NodeState& state);
   void evaluate_rotary_inertia(std::size_t point);
   void apply_load(std::size_t node, NodeState& state) const;
@@ -154,7 +160,7 @@ class StrainRod final : public RodModel {
 
   // its linearisation
   void vary_element(std::size_t element, Rows12& y);
-  void vary_turn(std::size_t element, std::size_t step, const Mat3& R_end, Rows3& phi) const;
+  void vary_gap(std::size_t element, std::size_t gap, Rows3& phi) const;
   void vary_load(std::size_t node, Rows12& y) const;
   void vary_law(std::size_t element, const std::vector<Rows3>& n, const std::vector<Rows3>& m);
   void sweep_columns();
@@ -186,7 +192,7 @@ class StrainRod final : public RodModel {
   std::vector<MatX> q_;  ///< per element, modes × functions
   std::vector<StrainPoint> points_;
   std::vector<NodeState> nodes_;  ///< element borders, after any load there
-  std::vector<Vec3> Omega_;       ///< of every Magnus step
+  std::vector<Turn> turns_;       ///< of every Magnus step
   VecX law_residual_;             ///< (4)
   VecX tip_gap_, base_gap_, tip_gap_start_, base_gap_start_;
   std::vector<Vec3> marked_;

@@ -23,23 +23,25 @@ VecX StrainRod::state_units() const {
 }
 
 // phi_end = phi + R_end J_r(Omega) dOmega
-void StrainRod::vary_turn(std::size_t e, std::size_t step, const Mat3& R_end, Rows3& phi) const {
-  const StrainRule::Step& s = rule_.steps[step];
-  Mat3 u;
-  for (Eigen::Index g = 0; g < 3; ++g)
-    u.col(g) = strain(e, s.phi.col(g), true);
-  const Vec3& Omega = Omega_[e * rule_.steps.size() + step];
-  const Eigen::Matrix<double, 3, 9> by_u =
-      R_end * right_jacobian(Omega) * magnus_tangent(s.fraction * length_of(e), u);
-  for (std::size_t f = 0; f < free_modes_.size(); ++f) {
-    const StrainMode& mode = modes_[free_modes_[f]];
-    if (!mode.turns) continue;
-    const Eigen::Index at = space_.state.cols() + first_unknown(e, f);
-    Mat3 along;
+void StrainRod::vary_gap(std::size_t e, std::size_t gap, Rows3& phi) const {
+  for (std::size_t k = gap * rule_.per_gap; k < (gap + 1) * rule_.per_gap; ++k) {
+    const StrainRule::Step& step = rule_.steps[k];
+    const Turn& done = turns_[e * rule_.steps.size() + k];
+    Mat3 u;
     for (Eigen::Index g = 0; g < 3; ++g)
-      along.col(g) = unit(mode) * (by_u.middleCols<3>(3 * g) * mode.axis);
-    for (Eigen::Index k = 0; k < rule_.functions(); ++k)
-      phi.col(at + k) += along * Vec3(s.phi.row(k));
+      u.col(g) = strain(e, step.phi.col(g), true);
+    const Eigen::Matrix<double, 3, 9> by_u =
+        done.R_end * right_jacobian(done.Omega) * magnus_tangent(step.fraction * length_of(e), u);
+    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+      const StrainMode& mode = modes_[free_modes_[f]];
+      if (!mode.turns) continue;
+      const Eigen::Index at = space_.state.cols() + first_unknown(e, f);
+      Mat3 along;
+      for (Eigen::Index g = 0; g < 3; ++g)
+        along.col(g) = unit(mode) * (by_u.middleCols<3>(3 * g) * mode.axis);
+      for (Eigen::Index j = 0; j < rule_.functions(); ++j)
+        phi.col(at + j) += along * Vec3(step.phi.row(j));
+    }
   }
 }
 
@@ -63,7 +65,7 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
   Rows3 phi = y.topRows<3>();
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const StrainPoint& point = points_[first + i];
-    vary_turn(e, i, point.R, phi);
+    vary_gap(e, i, phi);
     point_turns_[first + i] = phi;
     // d tau = phi × tau + R dv
     tau[i] = -hat(point.tau) * phi;
@@ -76,7 +78,7 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
             rule_.phi(k, static_cast<Eigen::Index>(i)) * axis;
     }
   }
-  vary_turn(e, tau.size(), rotation_of(nodes_[e + 1]), phi);
+  vary_gap(e, tau.size(), phi);
   const auto integral = [&](std::size_t i, const std::vector<Rows3>& rate, double factor,
                             Rows3& sum) {
     for (std::size_t j = 0; j < rate.size(); ++j)

@@ -227,9 +227,8 @@ RodField StrainRod::field() const {
         const auto first = e * static_cast<std::size_t>(G);
         const Mat3 R = from < 0 ? Mat3(rotation_of(nodes_[e]))
                                 : points_[first + static_cast<std::size_t>(from)].R;
-        Vec3 Omega;
-        FieldPoint point{R * turn(e, rule_.step_to(from, x), Omega), Vec3::Zero(), Vec3::Zero(),
-                         Vec3::Zero()};
+        const StrainRule::Step step = rule_.step(from < 0 ? 0 : rule_.gauss.points[from], x);
+        FieldPoint point{turn(e, step, R).R_end, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
         point.tau = point.R * strain(e, legendre(x, rule_.order), false);
         const VecX weights = interpolation_weights(rule_.gauss, x);
         for (Eigen::Index i = 0; i < G; ++i) {

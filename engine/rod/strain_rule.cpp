@@ -3,24 +3,31 @@
 
 namespace cprsim {
 
+// Polynomials converge exponentially, Magnus steps with their sixth power: on a rod bent by a
+// radian a step a gap leaves 3e-10 of the length with 11 points, two steps leave 5e-12.
 StrainRule::StrainRule(int order_of, int points_of)
     : order(order_of),
       gauss(gauss_rule(points_of)),
       integrate(integration_matrix(gauss)),
-      phi(order_of + 1, points_of) {
-  for (Eigen::Index i = 0; i < points(); ++i) {
-    phi.col(i) = legendre(gauss.points[i], order);
-    steps.push_back(step_to(i - 1, gauss.points[i]));
+      phi(order_of + 1, points_of),
+      per_gap(static_cast<std::size_t>((order_of + 4) / 5)) {
+  double from = 0;
+  for (Eigen::Index i = 0; i <= points(); ++i) {
+    const double to = i < points() ? gauss.points[i] : 1;
+    const double length = (to - from) / static_cast<double>(per_gap);
+    for (std::size_t k = 0; k < per_gap; ++k)
+      steps.push_back(
+          step(from + static_cast<double>(k) * length, from + static_cast<double>(k + 1) * length));
+    if (i < points()) phi.col(i) = legendre(to, order);
+    from = to;
   }
-  steps.push_back(step_to(points() - 1, 1));
 }
 
-StrainRule::Step StrainRule::step_to(Eigen::Index from, double x) const {
-  const double start = from < 0 ? 0 : gauss.points[from];
+StrainRule::Step StrainRule::step(double from, double to) const {
   const GaussRule three = gauss_rule(3);
-  Step step{x - start, MatX(functions(), 3)};
+  Step step{to - from, MatX(functions(), 3)};
   for (Eigen::Index g = 0; g < 3; ++g)
-    step.phi.col(g) = legendre(start + step.fraction * three.points[g], order);
+    step.phi.col(g) = legendre(from + (to - from) * three.points[g], order);
   return step;
 }
 

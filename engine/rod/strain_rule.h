@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What one element of a strain-basis rod knows about polynomials: the same for all elements of a
-// rod. Sections are asked at the Gauss points of the element; from each to the next leads one
-// Magnus step (engine/rod/magnus.h), which sees the strain at its own three Gauss points.
+// rod. Sections are asked at the Gauss points of the element; from each to the next lead Magnus
+// steps (engine/rod/magnus.h), which see the strain at three Gauss points of their own.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ struct StrainRule {
     MatX phi;             ///< (order + 1) × 3: polynomials at the step's Gauss points
   };
 
-  /// The step from point `from` (-1: the element's start) to x, a fraction of the element.
-  Step step_to(Eigen::Index from, double x) const;
+  /// The step from `from` to `to`, fractions of the element.
+  Step step(double from, double to) const;
 
   Eigen::Index functions() const { return order + 1; }
 
@@ -30,7 +30,8 @@ struct StrainRule {
   GaussRule gauss;
   MatX integrate;           ///< integration_matrix(gauss)
   MatX phi;                 ///< functions × points
-  std::vector<Step> steps;  ///< start → points → end: one more than points
+  std::size_t per_gap;      ///< steps from one point to the next
+  std::vector<Step> steps;  ///< start → points → end: gaps are one more than points
 };
 
 }  // namespace cprsim

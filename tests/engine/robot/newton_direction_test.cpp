@@ -6,6 +6,7 @@
 
 #include "tests/engine/robot/direction_error.h"
 #include "tests/engine/robot/sample_scenes.h"
+#include "tests/support/methods.h"
 
 namespace cprsim {
 namespace {
@@ -53,13 +54,14 @@ constexpr double kTolerance = 1e-7;
 /// Of rods discretised in every way, or in the scene's.
 void expect_exact(Scene scene, const Setting& setting, const std::string& what) {
   std::vector<Method> methods{scene.solver.method};
-  if (scene.solver.method == Method::kAuto) methods = {Method::kShooting, Method::kStrain};
+  if (scene.solver.method == Method::kAuto)
+    methods.assign(std::begin(kEveryMethod), std::end(kEveryMethod));
   scene.solver.order = 3;
   for (Method method : methods)
     for (unsigned seed = 1; seed <= 3; ++seed) {
       scene.solver.method = method;
       EXPECT_LT(slope_error(scene, setting, seed), kTolerance)
-          << what << ", state " << seed << ", method " << static_cast<int>(method);
+          << what << ", state " << seed << ", " << name_of(method);
     }
 }
 
