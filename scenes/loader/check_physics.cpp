@@ -149,6 +149,18 @@ void check_reach(Reading& r) {
   }
 }
 
+// some 10 kB a cell: 2 GB
+constexpr std::size_t kMostCells = 200'000;
+
+void check_size(Reading& r) {
+  const auto points = static_cast<std::size_t>(r.scene.solver.points.value_or(1));
+  const std::size_t rods = r.scene.rods.size();
+  if (points * rods > kMostCells)
+    r.report.error("E509", node_of_rod(r, 0),
+                   std::to_string(rods) + " rods of " + std::to_string(points) +
+                       " points are more than " + std::to_string(kMostCells) + " points");
+}
+
 struct Extremes {
   double least, most, t_least, t_most;
 };
@@ -275,6 +287,7 @@ void check_physics(Reading& r) {
   check_masses(r);
   check_effect_data(r, world);
   check_plausibility(r);
+  check_size(r);
   check_reach(r);
   check_drives(r);
   check_space(r);

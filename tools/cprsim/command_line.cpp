@@ -57,7 +57,8 @@ CLI::Option* option_named(CLI::App& app, const std::string& name) {
 }
 
 int complain(const CLI::App& app, const std::string& message) {
-  fmt::print(stderr, "{}: {}\nSee '{} --help'.\n", app.get_name(), message, app.get_name());
+  write_to_stderr(
+      fmt::format("{}: {}\nSee '{} --help'.\n", app.get_name(), message, app.get_name()));
   return kExitUsage;
 }
 

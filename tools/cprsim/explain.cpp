@@ -39,8 +39,8 @@ int explain_command(const Words& words) {
     const std::string_view meaning = explain_code(name);
     const std::string element = meaning.empty() ? explain_element(name) : "";
     if (meaning.empty() && element.empty()) {
-      fmt::print(stderr, "cprsim explain: '{}' is neither a code nor an element of a scene\n",
-                 name);
+      write_to_stderr(
+          fmt::format("cprsim explain: '{}' is neither a code nor an element of a scene\n", name));
       return kExitUsage;
     }
     text += meaning.empty() ? element : fmt::format("{}  {}\n", name, meaning);
