@@ -138,6 +138,10 @@ class RodModel {
   virtual void predict(const std::vector<const Unknowns*>& past,
                        const std::vector<double>& weights) = 0;
 
+  /// Everything that steps leave behind. For reading: after prepare() with the same rates and
+  /// length.
+  virtual void visit(Archive& archive) = 0;
+
   virtual RodSample observe() const = 0;
   /// The equilibrium at the last evaluate(), for stability and modes.
   virtual RodField field() const = 0;

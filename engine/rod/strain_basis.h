@@ -89,6 +89,7 @@ class StrainRod final : public RodModel {
   void set_unknowns(const Unknowns& u) override;
   void predict(const std::vector<const Unknowns*>& past,
                const std::vector<double>& weights) override;
+  void visit(Archive& archive) override;
   RodSample observe() const override;
   RodField field() const override;
   RodEnergy energy() const override;

@@ -172,6 +172,22 @@ void StrainRod::predict(const std::vector<const Unknowns*>& past,
   set_unknowns(sum);
 }
 
+void StrainRod::visit(Archive& archive) {
+  archive(growth_);
+  archive(evaluated_);
+  std::vector<NodeState> start{start_};
+  archive.doubles(start);
+  start_ = start.front();
+  for (MatX& q : q_)
+    archive(q);
+  archive.doubles(points_);
+  archive.doubles(nodes_);
+  archive.doubles(turns_);
+  archive.doubles(rotary_);
+  for (Track* track : tracks())
+    track->visit(archive);
+}
+
 RodSample StrainRod::observe() const {
   RodSample sample;
   sample.length = forcing_.length;

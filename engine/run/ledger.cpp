@@ -157,4 +157,9 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work) 
   sum_up();
 }
 
+void EnergyLedger::visit(Archive& archive) {
+  cprsim::visit(sample_, archive);
+  archive(start_);
+}
+
 }  // namespace cprsim

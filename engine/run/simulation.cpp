@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/math/state_text.h"
 #include "engine/robot/equations.h"
 #include "engine/robot/free_bodies.h"
 #include "engine/run/continuous_drives.h"
@@ -61,20 +62,7 @@ struct Simulation::Parts {
         ledger(robot, free_bodies.get()) {
     h = plan.adaptive ? std::min(plan.step, 1e-3) : plan.step;
     if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
-    collect_breaks();
-  }
-
-  void collect_breaks() {
-    auto take = [&](const Profile& profile) {
-      for (double b : profile.breakpoints(end))
-        breaks.push_back(b);
-    };
-    for (const DriveSpec& drive : scene.drives)
-      take(drive.profile);
-    for (const LoadSpec& load : scene.loads)
-      if (load.has_profile) take(load.profile);
-    breaks.push_back(end);
-    std::sort(breaks.begin(), breaks.end());
+    breaks = break_times(scene, end);
   }
 
   bool free_only() const { return robot.rods.empty() && robot.bodies.empty(); }
@@ -173,8 +161,13 @@ struct Simulation::Parts {
 
   void step_dynamic();
   void step_quasistatic();
-  double controlled(double step, double error) const;
+
+  double controlled(double step, double error) const {
+    return controlled_step(plan, step, error, last_error, marcher.error_order());
+  }
+
   void arrive(double t_new, double h_used, const Marcher::Outcome& outcome);
+  void visit(Archive& archive);
 };
 
 Simulation::Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies) {
@@ -227,17 +220,6 @@ const SolveReport& Simulation::start_near(const RobotUnknowns& neighbour, bool* 
 
 std::shared_ptr<const RobotUnknowns> Simulation::unknowns() const {
   return std::make_shared<RobotUnknowns>(parts_->equations.unknowns());
-}
-
-// PI control (Söderlind, ACM TOMS 29, 2003) with the usual limits.
-double Simulation::Parts::controlled(double step, double error) const {
-  const double k = marcher.error_order();
-  const double now_ratio = plan.tolerance / std::max(error, 1e-14);
-  const double old_ratio =
-      last_error > 0 ? plan.tolerance / std::max(last_error, 1e-14) : now_ratio;
-  const double factor = 0.9 * std::pow(now_ratio, 0.7 / k) * std::pow(old_ratio, -0.4 / k) *
-                        std::pow(now_ratio, 0.3 / k);
-  return step * std::clamp(factor, 0.2, 4.0);
 }
 
 void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outcome& outcome) {
@@ -352,6 +334,35 @@ const SolveReport& Simulation::advance() {
   p.statistics.step_seconds += wall;
   if (p.status != RunStatus::kFailed) p.observe(p.t - from, wall);
   return p.report;
+}
+
+void Simulation::Parts::visit(Archive& archive) {
+  archive(t);
+  archive(h);
+  archive(last_error);
+  cprsim::visit(statistics, archive);
+  equations.visit(archive);
+  marcher.visit(archive);
+  ledger.visit(archive);
+  archive(now.solver.iterations);
+  archive(now.solver.residual);
+  archive(now.solver.step);
+  if (!archive.reading()) return;
+  before = take_snapshot(robot, nullptr, t);
+  before.energy = ledger.sample();
+  before.solver = now.solver;
+  now = before;
+  status = t < end ? RunStatus::kRunning : RunStatus::kDone;
+}
+
+bool Simulation::has_visitable_state() const {
+  return parts_->free_bodies == nullptr;
+}
+
+void Simulation::visit(Archive& archive) {
+  if (!has_visitable_state())
+    throw StateError("bodies in free flight: what contact remembers of them cannot be saved");
+  parts_->visit(archive);
 }
 
 RunStatus Simulation::status() const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/model/scene.h"
 #include "engine/robot/free_bodies.h"
 #include "engine/run/snapshot.h"
@@ -34,6 +35,9 @@ struct RunStatistics {
   double smallest_step = 0, largest_step = 0;
   double build_seconds = 0, start_seconds = 0, step_seconds = 0;
 };
+
+/// Without wall times.
+void visit(RunStatistics& statistics, Archive& archive);
 
 /// Per-rod facts for `info` and run.json.
 struct RodFacts {
@@ -87,6 +91,15 @@ class Simulation {
 
   /// One time step (or, in quasi-static mode, one equilibrium). Only while status() is kRunning.
   const SolveReport& advance();
+
+  /// Everything that steps have left behind: written, read in the place of start(), or hashed.
+  /// Reading a state of this scene goes on from there as if it had never been written, bit for bit.
+  /// @throws StateError for a state of another robot, and for scenes with bodies in free flight:
+  /// what contact remembers of them is not known here
+  void visit(Archive& archive);
+
+  /// Whether visit() may be called.
+  bool has_visitable_state() const;
 
   RunStatus status() const;
   double time() const;
