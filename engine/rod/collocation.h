@@ -15,8 +15,9 @@
 // Control points are eliminated from the base to the last one (engine/math/banded_elimination.h),
 // whose six combinations that the base leaves free are the z of the two-port.
 //
-// Increments of a control point turn its quaternion and scale it, so that a turn of the whole rod
-// by any angle is one exact step. A length drive feeds the rod as in engine/rod/shooting.h.
+// Increments of a control point turn its quaternion and scale it: a turn of the whole rod by any
+// angle is one exact step for all rotations. A length drive feeds the rod as in
+// engine/rod/shooting.h.
 #pragma once
 
 #include <functional>
@@ -32,11 +33,11 @@
 
 namespace cprsim {
 
-constexpr int kLeastDegree = 2;
+constexpr int kLeastDegree = 2, kDefaultDegree = 7;
 
 struct CollocationOptions {
-  int degree = 5, elements = 8;           ///< elements: at least; all point loads are at knots
-  bool extension = false, shear = false;  ///< effects that change the law
+  int degree = kDefaultDegree, elements = 4;  ///< elements: at least; all point loads are at knots
+  bool extension = false, shear = false;      ///< effects that change the law
   bool rotary_inertia = false, damping = false;
   std::vector<double> stations;  ///< s of point loads
 };
@@ -81,6 +82,10 @@ class CollocationRod final : public RodModel {
   RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
+
+  RodResolution resolution() const override {
+    return {Method::kCollocation, "B-splines", elements_, options_.degree};
+  }
 
   int cells() const override { return elements_; }
 

@@ -127,8 +127,9 @@ TEST_P(Bspline, DerivativesAreSplinesOfOneDegreeLess) {
   MatX differences(space.size() - 1, 2);
   for (int i = 0; i + 1 < space.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    differences.row(i) = p * (control.row(i + 1) - control.row(i)) /
-                         (space.knots()[k + static_cast<std::size_t>(p) + 1] - space.knots()[k + 1]);
+    differences.row(i) =
+        p * (control.row(i + 1) - control.row(i)) /
+        (space.knots()[k + static_cast<std::size_t>(p) + 1] - space.knots()[k + 1]);
   }
   for (double x : places())
     EXPECT_LT((value(derivatives, differences, x) - slope(space, control, x)).norm(), 1e-12) << x;
@@ -161,7 +162,8 @@ TEST(Bspline, HasTheKnownValuesOnUniformKnots) {
     EXPECT_NEAR(q.value[j], (std::vector<double>{1. / 8, 6. / 8, 1. / 8})[std::size_t(j)], 1e-15);
   EXPECT_EQ(c.first, 2);
   for (int j = 0; j < 4; ++j) {
-    EXPECT_NEAR(c.value[j], (std::vector<double>{1. / 6, 4. / 6, 1. / 6, 0})[std::size_t(j)], 1e-15);
+    EXPECT_NEAR(c.value[j], (std::vector<double>{1. / 6, 4. / 6, 1. / 6, 0})[std::size_t(j)],
+                1e-15);
     EXPECT_NEAR(c.slope[j], (std::vector<double>{-0.5, 0, 0.5, 0})[std::size_t(j)], 1e-15);
   }
 }
