@@ -14,11 +14,9 @@
 namespace cprsim {
 namespace {
 
-/// Observed points per element: curves between them are drawn straight, and fields are integrated
-/// over them by three Gauss points (field()).
-int parts_per_element(int degree) {
-  return (degree + 1) / 2;
-}
+/// Where a rod is observed and its field given, at least so many and a knot: enough for drawings
+/// and modes, whose cost grows with the third power of the number.
+constexpr int kLeastNodes = 8;
 
 }  // namespace
 
@@ -50,7 +48,7 @@ void CollocationRod::place_sites(const std::vector<double>& grid) {
     station_of_.push_back(
         static_cast<std::size_t>(std::find(ends.begin(), ends.end(), node) - ends.begin()));
   int controls = 0;
-  const int parts = parts_per_element(options_.degree);
+  const int parts = (kLeastNodes + elements_ - 1) / elements_;
   for (std::size_t g = 0; g + 1 < ends.size(); ++g) {
     const std::vector<double> breaks(grid.begin() + static_cast<std::ptrdiff_t>(ends[g]),
                                      grid.begin() + static_cast<std::ptrdiff_t>(ends[g + 1]) + 1);
