@@ -26,7 +26,7 @@ MatX solve_columns(const MatX& A, const MatX& B);
 
 /// All x with A x + B y = 0 for A with fewer rows than columns, by elimination with complete
 /// pivoting: x = X [z; y], where z are the entries of x that no pivot was taken for.
-/// @return false if the rows of A are dependent.
+/// @return false if no pivot is left: a row vanishes, or is no number.
 bool general_solution(const MatX& A, const MatX& B, MatX& X);
 
 bool is_positive_definite(const MatX& A);

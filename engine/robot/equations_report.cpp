@@ -48,7 +48,7 @@ void visit(RobotUnknowns& u, Archive& archive) {
   for (RodModel::Unknowns& rod : u.rods) {
     constexpr std::size_t kMost = 100'000;
     archive(rod.values);
-    archive.resized_doubles(rod.starts, kMost);
+    if (!rod.starts.empty()) archive.resized_doubles(rod.starts, kMost);
     archive.doubles(rod.nodes);
   }
   for (Pose& body : u.bodies)

@@ -37,7 +37,9 @@ namespace {
 
 constexpr int kMostPoints = 10'000;
 // beyond these a rod has more unknowns than its dense equations can be solved with in a second
-constexpr int kHighestOrder = 40, kHighestDegree = 12, kMostElements = 400;
+constexpr int kHighestOrder = 40, kMostElements = 400;
+// of splines: below, positions and forces would not be smooth; above, engine/math/bspline.h ends
+constexpr int kLowestDegree = 2, kHighestDegree = 8;
 constexpr double kMostSteps = 1e8;
 
 const Node* chosen_physics(const Node& world) {
@@ -86,17 +88,20 @@ constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwar
 void read_space(Reading& r, const Node& node) {
   SolverSpec& solver = r.scene.solver;
   solver.space_place = node.place;
-  const auto count = [&](const char* key, int most) {
+  const auto count = [&](const char* key, int most, int least = 1) {
     const auto value = optional_count(node, key);
     if (value && *value > most)
       r.report.bad_value("E509", node, *node.attribute(key),
                          std::string(key) + " is at most " + std::to_string(most));
+    if (value && *value < least)
+      r.report.bad_value("E509", node, *node.attribute(key),
+                         std::string(key) + " is at least " + std::to_string(least));
     return value;
   };
   solver.points = count("points", kMostPoints);
   solver.integrator = choose(kIntegrators, node.value("integrator"));
   solver.order = count("order", kHighestOrder);
-  solver.degree = count("degree", kHighestDegree);
+  solver.degree = count("degree", kHighestDegree, kLowestDegree);
   solver.elements = count("elements", kMostElements);
 }
 

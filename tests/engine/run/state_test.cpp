@@ -81,7 +81,7 @@ TEST(State, GoesOnWithEverySchemeAndMethod) {
        {SchemeKind::kBackwardEuler, SchemeKind::kBdf2, SchemeKind::kBdfAlpha,
         SchemeKind::kGeneralizedAlpha, SchemeKind::kTrBdf2, SchemeKind::kEsdirk32,
         SchemeKind::kEsdirk43})
-    for (const Method method : {Method::kShooting, Method::kStrain})
+    for (const Method method : {Method::kShooting, Method::kStrain, Method::kCollocation})
       for (const bool fixed : {true, false}) {
         Scene scene = with_every_effect();
         scene.solver.method = method;
