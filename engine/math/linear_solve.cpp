@@ -77,7 +77,19 @@ bool general_solution(const MatX& A, const MatX& B, MatX& X) {
 }
 
 bool is_positive_definite(const MatX& A) {
-  return A.llt().info() == Eigen::Success;
+  return CholeskyFactor(A).positive_definite();
+}
+
+CholeskyFactor::CholeskyFactor(const MatX& A) : L_(A) {
+  const Eigen::LLT<Eigen::Ref<MatX>> factor(L_);  // in place
+  positive_definite_ = factor.info() == Eigen::Success;
+}
+
+MatX CholeskyFactor::solve(const MatX& B) const {
+  MatX X = B;
+  L_.triangularView<Eigen::Lower>().solveInPlace(X);
+  L_.triangularView<Eigen::Lower>().transpose().solveInPlace(X);
+  return X;
 }
 
 double conditioning(const MatX& A) {

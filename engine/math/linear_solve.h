@@ -31,6 +31,22 @@ bool general_solution(const MatX& A, const MatX& B, MatX& X);
 
 bool is_positive_definite(const MatX& A);
 
+/// A = L L^T, factored once to be solved with often.
+class CholeskyFactor {
+ public:
+  /// @param A symmetric
+  explicit CholeskyFactor(const MatX& A);
+
+  bool positive_definite() const { return positive_definite_; }
+
+  /// A^-1 B, for positive definite A.
+  MatX solve(const MatX& B) const;
+
+ private:
+  MatX L_;
+  bool positive_definite_ = false;
+};
+
 /// Smallest over largest singular value; 0 for an empty matrix.
 double conditioning(const MatX& A);
 

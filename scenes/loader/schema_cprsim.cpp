@@ -152,6 +152,8 @@ std::vector<ElementRule> action_elements() {
       {"world model", "cprsim:load", "", T::kGroup, "", '*', S::kSupported, "A force at a point."},
       {"cprsim:load", "force", "", T::kVec3, "N", '?', S::kSupported, "Force."},
       {"cprsim:load", "torque", "", T::kVec3, "N m", '?', S::kSupported, "Torque."},
+      {"world model", "cprsim:target", "", T::kGroup, "", '*', S::kSupported,
+       "A pose to which `cprsim solve` brings a frame; runs do not look at it."},
   };
 }
 
@@ -287,6 +289,11 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"cprsim:drive", "quantity", T::kChoice,
        "position|velocity|effort|length|!tension|!displacement", true, yes, "What is prescribed."},
       {"cprsim:drive cprsim:load", "profile", T::kRef, "", false, yes, "A cprsim:profile."},
+      {"cprsim:target", "frame", T::kRef, "", true, yes, "Link or frame to be brought to <pose>."},
+      {"cprsim:target", "freedoms", T::kText, "", false, yes,
+       "Those of x y z roll pitch yaw that are prescribed; all if absent."},
+      {"cprsim:target", "free", T::kText, "", false, yes,
+       "Driven joints and rods whose drives may change; all drives if absent."},
       {"cprsim:load", "at", T::kRef, "", true, yes, "Link, frame, rod::tip or rod(s=0.5)."},
       {"cprsim:load", "expressed_in", T::kRef, "", false, yes,
        "Frame of the numbers; the world if absent."},

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
@@ -33,6 +34,7 @@ struct SolveWords {
   std::vector<std::string> drives, poses, free, wrenches, measured, channels;
   std::string unknown_wrench;
   std::optional<double> at;
+  bool as_it_is = false;
 };
 
 struct Solved {
@@ -47,8 +49,9 @@ struct Solved {
 std::optional<int> read_words(SolveWords& w, const Words& words) {
   CommandLine line(
       "cprsim solve",
-      "Finds the robot's equilibrium and says whether it is stable. With a pose, finds the drives "
-      "that lead there;\nwith measured channels and an unknown wrench, the wrench that explains "
+      "Finds the robot's equilibrium and says whether it is stable. With a pose, here or as a "
+      "<cprsim:target> of\nthe scene, finds the drives that lead there; with measured channels and "
+      "an unknown wrench, the wrench that explains "
       "them.\n\n"
       "Examples\n"
       "  cprsim solve scene.xml\n"
@@ -63,6 +66,8 @@ std::optional<int> read_words(SolveWords& w, const Words& words) {
   line.texts("--pose", w.poses, "NAME=X,Y,Z[,R,P,Y]",
              "Prescribes a link's or frame's pose; * leaves a freedom open");
   line.list("--free", w.free, "NAMES", "Drives that --pose may change (default all)");
+  line.flag("--as-it-is", w.as_it_is, "Forward, even if the scene has a <cprsim:target>");
+  line.exclude("--as-it-is", "--pose");
   line.texts("--wrench", w.wrenches, "NAME=FX,FY,FZ[,TX,TY,TZ]",
              "Force (and torque) at a link's or frame's origin, world axes");
   line.text("--unknown-wrench", w.unknown_wrench, "NAME",
@@ -77,10 +82,35 @@ std::optional<int> read_words(SolveWords& w, const Words& words) {
   return line.parse(words);
 }
 
-Goal goal_of(const SolveWords& w, const StaticStudy& study) {
-  std::vector<Goal> goals;
+/// Poses on the command line; without them those of the scene.
+std::vector<PoseGoal> pose_goals(const SolveWords& w, const Scene& scene) {
+  std::vector<PoseGoal> goals;
   for (const std::string& text : w.poses)
-    goals.push_back(reach(pose_goal(study.scene(), text), study.robot().scale.length));
+    goals.push_back(pose_goal(scene, text));
+  if (goals.empty() && !w.as_it_is)
+    for (const TargetSpec& target : scene.targets)
+      goals.push_back(pose_goal(target));
+  return goals;
+}
+
+/// Drives that may change so that poses are reached.
+std::vector<Parameter> yielding_drives(const SolveWords& w, const StaticStudy& study) {
+  if (!w.poses.empty() || !w.free.empty()) return drives_or_all(study, w.free);
+  std::vector<Parameter> drives;
+  for (const Parameter& drive : study.drives()) {
+    const auto asks_for = [&](const TargetSpec& target) {
+      return std::count(target.drives.begin(), target.drives.end(), drive.index) > 0;
+    };
+    const auto& targets = study.scene().targets;
+    if (std::any_of(targets.begin(), targets.end(), asks_for)) drives.push_back(drive);
+  }
+  return drives;
+}
+
+Goal goal_of(const SolveWords& w, const std::vector<PoseGoal>& poses, const StaticStudy& study) {
+  std::vector<Goal> goals;
+  for (const PoseGoal& pose : poses)
+    goals.push_back(reach(pose, study.robot().scale.length));
   std::vector<ChannelGoal> measured;
   for (const std::string& text : w.measured) {
     ChannelGoal goal = measured_channel(study.scene(), text);
@@ -100,15 +130,16 @@ Solved solve(StaticStudy& study, const SolveWords& w, const std::vector<Paramete
     const auto [name, value] = split_assignment("--drive", text);
     study.set(study.drives()[drive_named(study, name)], number_of("--drive", value));
   }
-  const Goal goal = goal_of(w, study);
+  const std::vector<PoseGoal> poses = pose_goals(w, study.scene());
+  const Goal goal = goal_of(w, poses, study);
   std::vector<Parameter> parameters = wrench;
-  if (!w.poses.empty())
-    for (const Parameter& drive : drives_or_all(study, w.free))
+  if (!poses.empty())
+    for (const Parameter& drive : yielding_drives(w, study))
       parameters.push_back(drive);
   Solved solved;
   solved.report = study.solve();
   if (!solved.report.converged()) return solved;
-  solved.inverse = !w.poses.empty() || !w.measured.empty();
+  solved.inverse = !poses.empty() || !w.measured.empty();
   if (solved.inverse) solved.inverse_report = solve_inverse(study, parameters, goal);
   solved.stability = judge(study);
   return solved;
