@@ -7,6 +7,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace cprsim {
 
@@ -41,8 +44,52 @@ MatX solve_columns(const MatX& A, const MatX& B) {
   return A.partialPivLu().solve(B);
 }
 
+bool general_solution(const MatX& A, const MatX& B, MatX& X) {
+  const Eigen::Index r = A.rows(), c = A.cols(), all = c + B.cols();
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> M(r, all);
+  M.leftCols(c) = A;
+  M.rightCols(B.cols()) = B;
+  std::vector<Eigen::Index> entry(static_cast<std::size_t>(c));  // of x, as columns are swapped
+  std::iota(entry.begin(), entry.end(), Eigen::Index{0});
+  for (Eigen::Index k = 0; k < r; ++k) {
+    Eigen::Index row = 0, column = 0;
+    const double pivot = M.block(k, k, r - k, c - k).cwiseAbs().maxCoeff(&row, &column);
+    if (!(pivot > 1e-300)) return false;
+    if (row > 0) M.row(k).swap(M.row(k + row));
+    if (column > 0) {
+      M.col(k).swap(M.col(k + column));
+      std::swap(entry[static_cast<std::size_t>(k)], entry[static_cast<std::size_t>(k + column)]);
+    }
+    M.row(k).tail(all - k) /= M(k, k);
+    for (Eigen::Index i = 0; i < r; ++i)
+      if (i != k && M(i, k) != 0)
+        M.row(i).tail(all - k) -= double(M(i, k)) * M.row(k).tail(all - k);
+  }
+  X.setZero(c, all - r);
+  for (Eigen::Index k = 0; k < c; ++k) {
+    const Eigen::Index x = entry[static_cast<std::size_t>(k)];
+    if (k < r)
+      X.row(x) = -M.row(k).tail(all - r);
+    else
+      X(x, k - r) = 1;
+  }
+  return true;
+}
+
 bool is_positive_definite(const MatX& A) {
-  return A.llt().info() == Eigen::Success;
+  return CholeskyFactor(A).positive_definite();
+}
+
+CholeskyFactor::CholeskyFactor(const MatX& A) : L_(A) {
+  const Eigen::LLT<Eigen::Ref<MatX>> factor(L_);  // in place
+  positive_definite_ = factor.info() == Eigen::Success;
+}
+
+MatX CholeskyFactor::solve(const MatX& B) const {
+  MatX X = B;
+  L_.triangularView<Eigen::Lower>().solveInPlace(X);
+  L_.triangularView<Eigen::Lower>().transpose().solveInPlace(X);
+  return X;
 }
 
 double conditioning(const MatX& A) {

@@ -24,7 +24,28 @@ VecX solve_symmetric(const MatX& N, const VecX& b);
 /// Solution of A X = B by LU with partial pivoting; A must be regular.
 MatX solve_columns(const MatX& A, const MatX& B);
 
+/// All x with A x + B y = 0 for A with fewer rows than columns, by elimination with complete
+/// pivoting: x = X [z; y], where z are the entries of x that no pivot was taken for.
+/// @return false if no pivot is left: a row vanishes, or is no number.
+bool general_solution(const MatX& A, const MatX& B, MatX& X);
+
 bool is_positive_definite(const MatX& A);
+
+/// A = L L^T, factored once to be solved with often.
+class CholeskyFactor {
+ public:
+  /// @param A symmetric
+  explicit CholeskyFactor(const MatX& A);
+
+  bool positive_definite() const { return positive_definite_; }
+
+  /// A^-1 B, for positive definite A.
+  MatX solve(const MatX& B) const;
+
+ private:
+  MatX L_;
+  bool positive_definite_ = false;
+};
 
 /// Smallest over largest singular value; 0 for an empty matrix.
 double conditioning(const MatX& A);

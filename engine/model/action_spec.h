@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What acts on the robot from outside: drives and loads.
+// What acts on the robot from outside: drives and loads; and where drives are to bring it.
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "engine/math/types.h"
 #include "engine/model/body_spec.h"
@@ -35,6 +37,16 @@ struct LoadSpec {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< in the expressed_in axes
   bool has_profile = false;
   Profile profile;
+};
+
+/// A frame that drives are to bring to a pose: a question to `cprsim solve`, without effect on a
+/// run.
+struct TargetSpec {
+  Place place;
+  FrameRef at;
+  Pose X_WT;
+  std::array<bool, 6> asked{true, true, true, true, true, true};  ///< x y z roll pitch yaw
+  std::vector<int> drives;  ///< indices into Scene::drives of those that may change
 };
 
 }  // namespace cprsim

@@ -11,6 +11,7 @@
 #include "engine/model/body_spec.h"
 #include "engine/model/geometry.h"
 #include "engine/model/place.h"
+#include "engine/model/solver_spec.h"
 
 namespace cprsim {
 
@@ -60,7 +61,8 @@ struct RodSpec {
   std::string name;  ///< scoped
   Place place;
   RodEndSpec base, tip;
-  double length = 0;  ///< m, unloaded; a length drive replaces it
+  double length = 0;             ///< m, unloaded; a length drive replaces it
+  std::optional<Method> method;  ///< where it is not the scene's
   SectionSpec section;
   std::optional<MaterialSpec> material;
   StiffnessSpec stiffness;

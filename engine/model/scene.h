@@ -45,6 +45,7 @@ struct Scene {
   std::vector<RodSpec> rods;
   std::vector<DriveSpec> drives;
   std::vector<LoadSpec> loads;
+  std::vector<TargetSpec> targets;
 
   EnvironmentSpec environment;
   std::vector<LightSpec> lights;

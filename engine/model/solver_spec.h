@@ -10,7 +10,8 @@
 namespace cprsim {
 
 enum class Mode { kStatic, kQuasistatic, kDynamic };
-enum class Method { kAuto, kShooting };
+/// How a rod is discretised.
+enum class Method { kAuto, kShooting, kStrain, kCollocation };
 enum class ArcIntegrator { kEuler, kRk4, kGauss2, kGauss4, kGauss6 };
 enum class SchemeKind {
   kBackwardEuler,
@@ -27,8 +28,12 @@ struct SolverSpec {
   Place place;
   Method method = Method::kAuto;
   std::optional<double> accuracy;           ///< m
-  std::optional<int> points;                ///< arc-length cells per rod
-  std::optional<ArcIntegrator> integrator;  ///< default gauss4
+  std::optional<int> points;                ///< shooting: cells per rod
+  std::optional<ArcIntegrator> integrator;  ///< shooting: default gauss6
+  std::optional<int> order;                 ///< strain: highest degree of the polynomials
+  std::optional<int> degree;                ///< collocation: of the splines
+  std::optional<int> elements;              ///< strain, collocation: pieces per rod
+  Place space_place;                        ///< of all these
   std::optional<SchemeKind> scheme;         ///< default esdirk32
   std::optional<double> alpha, rho_inf;
   std::optional<double> step, tolerance;  ///< fixed step s; or relative local error

@@ -11,6 +11,7 @@
 // (a <- q - z once a step is accepted). T q_t damps the spring's own vibration.
 #pragma once
 
+#include "engine/math/archive.h"
 #include "engine/model/body_spec.h"
 
 namespace cprsim {
@@ -55,6 +56,11 @@ class AxisLaw {
 
   /// The step that ends at q is final.
   void accept(const AxisSpec& spec, double q) { anchor_ = q - held(spec, q); }
+
+  void visit(Archive& archive) {
+    archive(anchor_);
+    archive(sticks_);
+  }
 
  private:
   double held(const AxisSpec& spec, double q) const;

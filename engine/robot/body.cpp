@@ -63,4 +63,13 @@ double RigidBody::kinetic_energy() const {
   return 0.5 * mass * position.v.squaredNorm() + 0.5 * omega.dot(inertia * omega);
 }
 
+void RigidBody::visit(Archive& archive) {
+  archive(R);
+  archive(p);
+  archive(omega);
+  archive(R_start_);
+  position.visit(archive);
+  rotation.visit(archive);
+}
+
 }  // namespace cprsim

@@ -46,6 +46,8 @@ class RigidBody {
 
   double kinetic_energy() const;
 
+  void visit(Archive& archive);
+
   Track position{Track::Kind::kLinear};
   Track rotation{Track::Kind::kRotation};
 

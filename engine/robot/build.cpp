@@ -2,14 +2,12 @@
 // From a scene to a robot: weld what fixed joints hold together, sort links into ground, Newton
 // bodies and free ones, place rods, joints, drives and loads on them.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
 #include "engine/math/so3.h"
+#include "engine/model/planar.h"
 #include "engine/robot/robot.h"
-#include "engine/rod/planar.h"
-#include "engine/rod/shooting.h"
 
 namespace cprsim {
 namespace {
@@ -134,57 +132,26 @@ bool off_for(const RodSpec& rod, const char* effect) {
   return std::find(rod.without.begin(), rod.without.end(), effect) != rod.without.end();
 }
 
-// Measured on the published Stewart-Gough robot (rods bent by about a radian): N cells of gauss6
-// leave an error of 3.4e-8 L (6 / N)^6. An accuracy asked for gets ten times less; without one, 6
-// cells. Other integrators are there to be compared with and get cells for about the same cost. The
-// error depends on how far a cell turns: a rod wound up by `turn` > 1 rad gets as many times more.
-int default_cells(ArcIntegrator integrator, const std::optional<double>& accuracy, double length,
-                  double turn) {
-  const double winding = std::max(1.0, turn);
-  double cells = integrator == ArcIntegrator::kGauss6 ? 6 : 12;
-  if (integrator == ArcIntegrator::kGauss6 && accuracy)
-    cells = std::clamp(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6)), 3.0, 60.0);
-  return static_cast<int>(std::clamp(std::ceil(cells * winding), 3.0, 600.0));
-}
-
-ShootingOptions shooting_options(const Scene& scene, const RodSpec& rod) {
-  auto has = [&](Effect e) { return scene.effects.has(e) && !off_for(rod, effect_name(e)); };
-  ShootingOptions o;
-  o.integrator = scene.solver.integrator.value_or(kDefaultIntegrator);
-  o.cells = scene.solver.points.value_or(default_cells(
-      o.integrator, scene.solver.accuracy, rod.length, rod.length * rod.rest_curvature.norm()));
-  o.extension = has(Effect::kExtension);
-  o.shear = has(Effect::kShear);
-  o.rotary_inertia = has(Effect::kRotaryInertia);
-  o.damping = has(Effect::kDamping) && rod.damping.has_value();
-  return o;
-}
-
-PlanarHold hold_of(const Robot& robot, const RobotRod& rod, const RodEndSpec& end,
-                   const Attachment& at) {
-  const Vec3 normal = robot.pose_of(at).R.transpose() * robot.plane->col(2);
-  const std::optional<PlanarHold> hold = planar_hold(end, normal);
-  if (!hold)
-    throw std::invalid_argument("a joint of rod '" + rod.spec->name +
-                                "' turns neither about the plane's normal nor across it");
-  return *hold;
-}
-
-std::unique_ptr<RodModel> make_model(const Robot& robot, const RobotRod& rod,
-                                     const ShootingOptions& options) {
-  const RodSpec& spec = *rod.spec;
-  const Pose base = robot.pose_of(rod.base);
-  if (robot.plane) {
-    const bool by_tip = holds_spin(spec.tip) && !holds_spin(spec.base);
-    return std::make_unique<PlanarRod>(spec.name, hold_of(robot, rod, spec.base, rod.base),
-                                       hold_of(robot, rod, spec.tip, rod.tip), *robot.plane, base,
-                                       by_tip ? robot.pose_of(rod.tip).R : base.R, rod.section,
-                                       rod.length, options);
-  }
-  auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
-                                             rod.section, rod.length, options);
-  model->set_unloaded(base);
-  return model;
+RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
+  const Scene& scene = *robot.scene;
+  const auto has = [&](Effect e) {
+    return scene.effects.has(e) && !off_for(*rod.spec, effect_name(e));
+  };
+  RodPlan plan;
+  plan.spec = rod.spec;
+  plan.X_WBase = robot.pose_of(rod.base);
+  plan.X_WTip = robot.pose_of(rod.tip);
+  plan.plane = robot.plane;
+  plan.section = rod.section;
+  plan.length = rod.length;
+  plan.extension = has(Effect::kExtension);
+  plan.shear = has(Effect::kShear);
+  plan.rotary_inertia = has(Effect::kRotaryInertia);
+  plan.damping = has(Effect::kDamping) && rod.spec->damping.has_value();
+  for (const LoadSpec* load : rod.loads)
+    plan.stations.push_back(load->rod_s);
+  plan.solver = &scene.solver;
+  return plan;
 }
 
 void add_rods(Robot& robot) {
@@ -201,15 +168,12 @@ void add_rods(Robot& robot) {
     rod.length = spec.length;
     for (const DriveSpec& drive : scene.drives)
       if (drive.rod == static_cast<int>(i)) rod.length_drive = &drive.profile;
-    ShootingOptions options = shooting_options(scene, spec);
-    for (const LoadSpec& load : scene.loads) {
-      if (load.rod != static_cast<int>(i)) continue;
-      rod.loads.push_back(&load);
-      options.stations.push_back(load.rod_s);
-    }
+    for (const LoadSpec& load : scene.loads)
+      if (load.rod == static_cast<int>(i)) rod.loads.push_back(&load);
     rod.gravity = spec.gravity && !off_for(spec, "gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
-    rod.model = make_model(robot, rod, options);
+    rod.choice = choose_method(spec, scene.solver);
+    rod.model = make_rod(rod.choice.method, plan_of(robot, rod));
     robot.rods.push_back(std::move(rod));
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace cprsim {
 namespace {
@@ -36,7 +37,7 @@ RodContacts::RodContacts(Robot& robot) : robot_(robot) {
     mine.rod = &rod;
     mine.side = rod.model->touching();
     mine.radius = rod.section.half_width;
-    if (!mine.side || off_for(*rod.spec, "contact")) continue;
+    if (off_for(*rod.spec, "contact")) continue;
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       if (robot.links[i].body != LinkPlace::kGround) continue;
@@ -52,6 +53,9 @@ RodContacts::RodContacts(Robot& robot) : robot_(robot) {
       }
     }
     if (surfaces.empty()) continue;
+    if (!mine.side)
+      throw std::invalid_argument("rod '" + rod.spec->name +
+                                  "' may touch obstacles: only method shooting in space can");
     mine.side->set_surfaces(surfaces, mine.radius, friction_);
     rods_.push_back(std::move(mine));
   }

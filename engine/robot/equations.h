@@ -32,6 +32,8 @@ struct RobotUnknowns {
   std::vector<Vec6> joint_lambda;
 };
 
+void visit(RobotUnknowns& u, Archive& archive);
+
 /// Whether one may be set where the other was found: as many of everything.
 bool alike(const RobotUnknowns& a, const RobotUnknowns& b);
 
@@ -62,6 +64,9 @@ class Equations final : public Problem {
   void set_unknowns(const RobotUnknowns& u);
   /// Weighted sum of past unknowns as the next guess; weights sum to 1.
   void predict(const std::vector<const RobotUnknowns*>& past, const std::vector<double>& weights);
+
+  /// Of all rods, bodies and joints, with what the equations themselves remember.
+  void visit(Archive& archive);
 
   /// restart() returns to the unknowns at this call.
   void mark_start() { start_ = unknowns(); }

@@ -44,4 +44,32 @@ int Equations::unknown_count() const {
   return sum;
 }
 
+void visit(RobotUnknowns& u, Archive& archive) {
+  for (RodModel::Unknowns& rod : u.rods) {
+    constexpr std::size_t kMost = 100'000;
+    archive(rod.values);
+    if (!rod.starts.empty()) archive.resized_doubles(rod.starts, kMost);
+    archive.doubles(rod.nodes);
+  }
+  for (Pose& body : u.bodies)
+    archive(body);
+  archive.doubles(u.joint_q);
+  archive.doubles(u.joint_lambda);
+}
+
+void Equations::visit(Archive& archive) {
+  archive(t_);
+  archive(before_);
+  rates_.visit(archive);
+  archive(equilibrium_time_);
+  // coefficients of the last solve; what was found with them follows
+  if (archive.reading()) set_instant(t_, before_, rates_);
+  for (RigidBody& body : robot_.bodies)
+    body.visit(archive);
+  for (Joint& joint : robot_.joints)
+    joint.visit(archive);
+  for (RobotRod& rod : robot_.rods)
+    rod.model->visit(archive);
+}
+
 }  // namespace cprsim

@@ -288,4 +288,18 @@ void Joint::accept(const Pose& X_W_parent, const Pose& X_W_child) {
   if (is_ball()) Q_start_ = relative_attitude(X_W_parent, X_W_child);
 }
 
+void Joint::visit(Archive& archive) {
+  archive(q);
+  archive(lambda);
+  archive(accepted_q_);
+  archive(Q_start_);
+  archive(ball_position_);
+  for (Freedom& freedom : freedoms) {
+    archive(freedom.effort);
+    freedom.law.visit(archive);
+  }
+  track.visit(archive);
+  spin.visit(archive);
+}
+
 }  // namespace cprsim

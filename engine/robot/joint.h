@@ -131,6 +131,8 @@ class Joint {
   /// The step is final.
   void accept(const Pose& X_W_parent, const Pose& X_W_child);
 
+  void visit(Archive& archive);
+
   /// Origin of J_C.
   Vec3 place(const Pose& X_W_child) const { return (X_W_child * X_CJ_).p; }
 

@@ -11,7 +11,7 @@
 #include "engine/model/scene.h"
 #include "engine/robot/body.h"
 #include "engine/robot/joint.h"
-#include "engine/rod/rod_model.h"
+#include "engine/rod/make_rod.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -33,6 +33,7 @@ struct Attachment {
 struct RobotRod {
   const RodSpec* spec = nullptr;
   SectionProperties section;
+  MethodChoice choice;
   std::unique_ptr<RodModel> model;
   Attachment base, tip;
   bool base_held = true, tip_held = false;

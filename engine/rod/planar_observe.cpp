@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/rod/arc_grid.h"
 #include "engine/rod/planar.h"
 
 namespace cprsim {
@@ -196,6 +197,16 @@ void PlanarRod::predict(const std::vector<const Unknowns*>& past,
     sum.values += weights[i] * past[i]->values;
   }
   set_unknowns(sum);
+}
+
+void PlanarRod::visit(Archive& archive) {
+  archive(growth_);
+  archive(evaluated_);
+  archive.doubles(stages_);
+  archive.resized_doubles(starts_, static_cast<std::size_t>(cells_));
+  segment_first_ = segment_starts(static_cast<int>(starts_.size()), cells_);
+  archive.doubles(nodes_);
+  track_.visit(archive);
 }
 
 RodSample PlanarRod::observe() const {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/math/types.h"
+#include "engine/model/solver_spec.h"
 #include "engine/rod/contact.h"
 #include "engine/rod/field.h"
 #include "engine/rod/rod_end.h"
@@ -69,6 +70,14 @@ struct RodEnergy {
   double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping
   double feed_power =
       0;  ///< W, brought in per unit feed rate of the length drive (N): see shooting.cpp
+};
+
+/// How finely a rod is cut, in the words of its method.
+struct RodResolution {
+  Method method = Method::kShooting;
+  const char* rule = "";  ///< of the pieces: table, polynomials, splines
+  int elements = 0;       ///< pieces along the rod
+  int order = 0;          ///< of the table, or degree of the functions
 };
 
 class RodModel {
@@ -131,6 +140,10 @@ class RodModel {
   virtual void predict(const std::vector<const Unknowns*>& past,
                        const std::vector<double>& weights) = 0;
 
+  /// Everything that steps leave behind. For reading: after prepare() with the same rates and
+  /// length.
+  virtual void visit(Archive& archive) = 0;
+
   virtual RodSample observe() const = 0;
   /// The equilibrium at the last evaluate(), for stability and modes.
   virtual RodField field() const = 0;
@@ -140,7 +153,8 @@ class RodModel {
   /// The side that touches obstacles; null where the discretisation has none.
   virtual TouchingRod* touching() { return nullptr; }
 
-  virtual int cells() const = 0;
+  virtual RodResolution resolution() const = 0;
+  virtual int cells() const = 0;  ///< pieces that are swept one after another
   virtual int segments() const = 0;
   virtual int unknown_count() const = 0;
   virtual long section_evaluations() const = 0;

@@ -77,10 +77,15 @@ class ShootingRod final : public RodModel, public TouchingRod {
   void set_unknowns(const Unknowns& u) override;
   void predict(const std::vector<const Unknowns*>& past,
                const std::vector<double>& weights) override;
+  void visit(Archive& archive) override;
   RodSample observe() const override;
   RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
+
+  RodResolution resolution() const override {
+    return {Method::kShooting, table_->name, cells_, table_->order};
+  }
 
   int cells() const override { return cells_; }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/math/so3.h"
+#include "engine/rod/arc_grid.h"
 #include "engine/rod/shooting.h"
 
 namespace cprsim {
@@ -244,6 +245,18 @@ void ShootingRod::predict(const std::vector<const Unknowns*>& past,
     Eigen::Map<Vec3>(out.m) = m;
   }
   set_unknowns(sum);
+}
+
+void ShootingRod::visit(Archive& archive) {
+  archive(growth_);
+  archive(evaluated_);
+  archive.doubles(stages_);
+  archive.resized_doubles(starts_, static_cast<std::size_t>(cells_));
+  segment_first_ = segment_starts(static_cast<int>(starts_.size()), cells_);
+  archive.doubles(nodes_);
+  for (Track* track : tracks())
+    track->visit(archive);
+  archive.doubles(reference_rotations_);
 }
 
 RodSample ShootingRod::observe() const {

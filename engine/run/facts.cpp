@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "engine/rod/shooting.h"
-#include "engine/rod/tableau.h"
 
 namespace cprsim {
 namespace {
@@ -18,6 +17,7 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   const SectionProperties& s = rod.section;
   const double L = rod.length, EI = std::min(s.K_bt.x(), s.K_bt.y());
   f.name = rod.spec->name;
+  f.length = L;
   f.mass = s.rhoA * L;
   f.bending_x = s.K_bt.x();
   f.bending_y = s.K_bt.y();
@@ -30,8 +30,14 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   const bool dynamic = scene.simulation.mode == Mode::kDynamic;
   const double c0 = dynamic ? 1.5 / plan.step : 0;
   f.growth_exponent = growth_exponent(s, s.K_bt, Vec3::Zero(), L, s.rhoA * c0 * c0, 0);
-  f.cells = rod.model->cells();
-  f.segments = std::clamp(static_cast<int>(std::ceil(f.growth_exponent / 6)), 1, f.cells);
+  const RodResolution resolution = rod.model->resolution();
+  f.method = resolution.method;
+  f.method_reason = rod.choice.why;
+  f.rule = resolution.rule;
+  f.elements = resolution.elements;
+  f.order = resolution.order;
+  if (f.method == Method::kShooting)
+    f.segments = std::clamp(static_cast<int>(std::ceil(f.growth_exponent / 6)), 1, f.elements);
   f.unknowns = rod.model->unknown_count();
   f.gravity_number = s.rhoA * 9.81 * std::pow(L, 3) / EI;
   f.shear_number = s.K_se.x() > 0 ? EI / (s.K_se.x() * L * L) : 0;
@@ -45,7 +51,6 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
 ProblemFacts problem_facts(const Robot& robot, const Equations& equations, const StepPlan& plan) {
   ProblemFacts facts;
   const Scene& scene = *robot.scene;
-  facts.integrator = arc_tableau(scene.solver.integrator.value_or(kDefaultIntegrator)).name;
   facts.scheme = scene.simulation.mode == Mode::kDynamic ? to_string(plan.scheme.kind) : "statics";
   facts.planar = robot.plane.has_value();
   facts.step = plan.adaptive ? 0 : plan.step;

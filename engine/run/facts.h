@@ -2,6 +2,8 @@
 // How a scene will be stepped, and the numbers about its rods that people want to see before a run.
 #pragma once
 
+#include <vector>
+
 #include "engine/model/scene.h"
 #include "engine/robot/equations.h"
 #include "engine/run/simulation.h"
@@ -18,6 +20,13 @@ struct StepPlan {
 };
 
 StepPlan plan_steps(const Scene& scene);
+
+/// When drives or loads jump or have a kink, ascending, and the end.
+std::vector<double> break_times(const Scene& scene, double end);
+
+/// The step after one with this error estimate; last_error 0: there was none before.
+double controlled_step(const StepPlan& plan, double step, double error, double last_error,
+                       int order);
 
 /// Of equilibria: one point to get right, with more iterations than a time step may have.
 SolveOptions static_options(const SolverSpec& spec);

@@ -161,4 +161,9 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work, 
   sample_.balance = before;
 }
 
+void EnergyLedger::visit(Archive& archive) {
+  cprsim::visit(sample_, archive);
+  archive(start_);
+}
+
 }  // namespace cprsim

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/robot/free_bodies.h"
 #include "engine/robot/robot.h"
 #include "engine/run/snapshot.h"
@@ -38,6 +39,9 @@ class EnergyLedger {
   double effort_work(double t) const;
 
   const EnergySample& sample() const { return sample_; }
+
+  /// Between steps.
+  void visit(Archive& archive);
 
  private:
   struct Point {

@@ -167,6 +167,17 @@ double Marcher::error_estimate() const {
   return error;
 }
 
+void Marcher::visit(Archive& archive) {
+  stepper_.visit(archive);
+  archive(h_);
+  const std::size_t count = archive.count(past_.size(), kPastKept);
+  if (archive.reading()) past_.assign(count, {0, equations_.unknowns()});
+  for (Solved& solved : past_) {
+    archive(solved.time);
+    cprsim::visit(solved.unknowns, archive);
+  }
+}
+
 void Marcher::accept() {
   stepper_.accept(tracks_);
   for (RigidBody& body : robot_.bodies)

@@ -45,6 +45,8 @@ class Marcher {
   void accept();
   void reject();
 
+  void visit(Archive& archive);
+
   bool estimates_error() const { return stepper_.has_error_estimate(); }
 
   int error_order() const { return stepper_.error_order(); }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/math/state_text.h"
 #include "engine/run/simulation_parts.h"
 
 namespace cprsim {
@@ -94,6 +95,36 @@ const SolveReport& Simulation::advance() {
   p.statistics.step_seconds += wall;
   if (p.status != RunStatus::kFailed) p.observe(p.t - from, wall);
   return p.report;
+}
+
+void Simulation::Parts::visit(Archive& archive) {
+  archive(t);
+  archive(h);
+  archive(last_error);
+  cprsim::visit(statistics, archive);
+  equations.visit(archive);
+  marcher.visit(archive);
+  ledger.visit(archive);
+  archive(now.solver.iterations);
+  archive(now.solver.residual);
+  archive(now.solver.step);
+  if (!archive.reading()) return;
+  before = take_snapshot(robot, nullptr, t);
+  before.energy = ledger.sample();
+  before.solver = now.solver;
+  now = before;
+  status = t < end ? RunStatus::kRunning : RunStatus::kDone;
+}
+
+bool Simulation::has_visitable_state() const {
+  return parts_->free_bodies == nullptr && !parts_->contacts.any();
+}
+
+void Simulation::visit(Archive& archive) {
+  if (!has_visitable_state())
+    throw StateError(
+        "bodies in free flight or rods in contact: what contact remembers cannot be saved");
+  parts_->visit(archive);
 }
 
 RunStatus Simulation::status() const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/model/scene.h"
 #include "engine/robot/free_bodies.h"
 #include "engine/run/snapshot.h"
@@ -35,19 +36,27 @@ struct RunStatistics {
   double build_seconds = 0, start_seconds = 0, step_seconds = 0;
 };
 
+/// Without wall times.
+void visit(RunStatistics& statistics, Archive& archive);
+
 /// Per-rod facts for `info` and run.json.
 struct RodFacts {
   std::string name;
-  double mass = 0, bending_x = 0, bending_y = 0, torsion = 0, axial = 0, shear_x = 0;
+  double length = 0, mass = 0;
+  double bending_x = 0, bending_y = 0, torsion = 0, axial = 0, shear_x = 0;
   double first_frequency = 0;  ///< Hz, as a cantilever
   double buckling_load = 0;    ///< N, clamped-free Euler load of the weaker plane
   double growth_exponent = 0;  ///< design section 5, at the step used
-  int cells = 0, segments = 0, unknowns = 0;
+  Method method = Method::kShooting;
+  std::string method_reason;
+  std::string rule;             ///< of its pieces: "gauss6", "legendre"
+  int elements = 0, order = 0;  ///< pieces, and the order of the rule
+  int segments = 0, unknowns = 0;
   double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
 };
 
 struct ProblemFacts {
-  std::string integrator, scheme;
+  std::string scheme;
   bool planar = false;  ///< of the kernel: everything moves in a plane
   double step = 0;      ///< fixed step, or 0 when adaptive
   int body_unknowns = 0, constraint_unknowns = 0;
@@ -82,6 +91,15 @@ class Simulation {
 
   /// One time step (or, in quasi-static mode, one equilibrium). Only while status() is kRunning.
   const SolveReport& advance();
+
+  /// Everything that steps have left behind: written, read in the place of start(), or hashed.
+  /// Reading a state of this scene goes on from there as if it had never been written, bit for bit.
+  /// @throws StateError for a state of another robot, and for scenes with bodies in free flight:
+  /// what contact remembers of them is not known here
+  void visit(Archive& archive);
+
+  /// Whether visit() may be called.
+  bool has_visitable_state() const;
 
   RunStatus status() const;
   double time() const;

@@ -56,20 +56,7 @@ struct Simulation::Parts {
         ledger(robot, free_bodies.get()) {
     h = plan.adaptive ? std::min(plan.step, 1e-3) : plan.step;
     if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
-    collect_breaks();
-  }
-
-  void collect_breaks() {
-    auto take = [&](const Profile& profile) {
-      for (double b : profile.breakpoints(end))
-        breaks.push_back(b);
-    };
-    for (const DriveSpec& drive : scene.drives)
-      take(drive.profile);
-    for (const LoadSpec& load : scene.loads)
-      if (load.has_profile) take(load.profile);
-    breaks.push_back(end);
-    std::sort(breaks.begin(), breaks.end());
+    breaks = break_times(scene, end);
   }
 
   bool free_only() const { return robot.rods.empty() && robot.bodies.empty(); }
@@ -192,8 +179,13 @@ struct Simulation::Parts {
   bool contacts_object(const Marcher::Outcome& outcome, double step, double& target);
   void step_dynamic();
   void step_quasistatic();
-  double controlled(double step, double error) const;
+
+  double controlled(double step, double error) const {
+    return controlled_step(plan, step, error, last_error, marcher.error_order());
+  }
+
   void arrive(double t_new, double h_used, const Marcher::Outcome& outcome);
+  void visit(Archive& archive);
 };
 
 }  // namespace cprsim

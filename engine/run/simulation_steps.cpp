@@ -16,17 +16,6 @@ constexpr double kCushion = 0.1;
 
 }  // namespace
 
-// PI control (Söderlind, ACM TOMS 29, 2003) with the usual limits.
-double Simulation::Parts::controlled(double step, double error) const {
-  const double k = marcher.error_order();
-  const double now_ratio = plan.tolerance / std::max(error, 1e-14);
-  const double old_ratio =
-      last_error > 0 ? plan.tolerance / std::max(last_error, 1e-14) : now_ratio;
-  const double factor = 0.9 * std::pow(now_ratio, 0.7 / k) * std::pow(old_ratio, -0.4 / k) *
-                        std::pow(now_ratio, 0.3 / k);
-  return step * std::clamp(factor, 0.2, 4.0);
-}
-
 void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outcome& outcome) {
   marcher.accept();
   t = t_new;

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/math/types.h"
 #include "engine/rod/shape.h"
 
@@ -52,6 +53,12 @@ struct Snapshot {
   SolverSample solver;
   ContactSample contact;
 };
+
+inline void visit(EnergySample& e, Archive& archive) {
+  for (double* x :
+       {&e.kinetic, &e.elastic, &e.gravity, &e.dissipated, &e.work, &e.total, &e.balance})
+    archive(*x);
+}
 
 /// The state between two snapshots: cubic Hermite in positions, geodesic in rotations, linear in
 /// the rest. Requires a.time <= t <= b.time.

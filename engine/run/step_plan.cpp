@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
 #include "engine/run/facts.h"
 
@@ -31,6 +32,40 @@ StepPlan plan_steps(const Scene& scene) {
     plan.tolerance = 0.1 * *spec.accuracy / (length > 0 ? length : 1);
   }
   return plan;
+}
+
+std::vector<double> break_times(const Scene& scene, double end) {
+  std::vector<double> breaks{end};
+  const auto take = [&](const Profile& profile) {
+    for (const double b : profile.breakpoints(end))
+      breaks.push_back(b);
+  };
+  for (const DriveSpec& drive : scene.drives)
+    take(drive.profile);
+  for (const LoadSpec& load : scene.loads)
+    if (load.has_profile) take(load.profile);
+  std::sort(breaks.begin(), breaks.end());
+  return breaks;
+}
+
+// PI control (Söderlind, ACM TOMS 29, 2003) with the usual limits.
+double controlled_step(const StepPlan& plan, double step, double error, double last_error,
+                       int order) {
+  const double k = order;
+  const double now_ratio = plan.tolerance / std::max(error, 1e-14);
+  const double old_ratio =
+      last_error > 0 ? plan.tolerance / std::max(last_error, 1e-14) : now_ratio;
+  const double factor = 0.9 * std::pow(now_ratio, 0.7 / k) * std::pow(old_ratio, -0.4 / k) *
+                        std::pow(now_ratio, 0.3 / k);
+  return step * std::clamp(factor, 0.2, 4.0);
+}
+
+void visit(RunStatistics& s, Archive& archive) {
+  for (long* x : {&s.steps, &s.rejected, &s.retried, &s.iterations, &s.max_iterations,
+                  &s.start_iterations, &s.section_evaluations, &s.factorizations})
+    archive(*x);
+  for (double* x : {&s.worst_residual, &s.smallest_step, &s.largest_step})
+    archive(*x);
 }
 
 SolveOptions static_options(const SolverSpec& spec) {

@@ -354,6 +354,7 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
                         {levenberg_marquardt, true, false, false},
                         {hardening, false, false, true},
                         {continuation, false, false, false},
+                        {relaxation, false, true, true},
                         {relaxation, true, false, true},
                         {relaxation, false, false, false}};
   SolveReport total;
@@ -362,7 +363,10 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
   const bool gaping = problem.wants_soft_start() && first.largest > options.tolerance;
   for (const Rung& rung : rungs) {
     if (rung.gaping && !gaping) continue;
-    if (rung.bowed) problem.break_symmetry();
+    if (rung.bowed) {
+      problem.break_symmetry();
+      problem.evaluate();
+    }
     if (rung.soft && gaping) soft_start(problem, total);
     const SolveReport part = rung.solve(problem, options);
     add_counts(total, part);

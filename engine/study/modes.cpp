@@ -53,7 +53,7 @@ std::vector<VibrationMode> natural_modes(const StaticStudy& study, int count) {
   const RobotVariation v = robot_variation(study.robot(), Inertia::kReal);
   MatX K, M;
   v.assemble(K, M);
-  const SymmetricModes lowest = lowest_modes(K, M);
+  const SymmetricModes lowest = lowest_modes(K, M, count);
   std::vector<VibrationMode> modes;
   for (Eigen::Index i = 0; i < lowest.values.size() && i < count; ++i) {
     VibrationMode mode = expand(v, lowest.vectors.col(i));

@@ -112,7 +112,8 @@ class Search {
       sorted.emplace_back(std::abs(system_.distance(a, one) - sigma), &one);
     std::sort(sorted.begin(), sorted.end());
     std::vector<const PathStation*> chosen;
-    for (const auto& [gap, one] : sorted) {
+    for (const auto& each : sorted) {
+      const PathStation* one = each.second;
       const bool apart = std::all_of(chosen.begin(), chosen.end(), [&](const PathStation* other) {
         return std::abs(system_.distance(*other, *one)) > kApart;
       });

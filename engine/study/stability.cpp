@@ -32,11 +32,14 @@ StabilityVerdict verdict_of(int negative, int none) {
   return none > 0 ? StabilityVerdict::kSingular : StabilityVerdict::kStable;
 }
 
-/// A rod's part with its ends held: its generalised stiffnesses.
-VecX held_stiffnesses(const ReducedRod& rod) {
-  const Eigen::Index k = rod.inner;
-  if (k == 0) return VecX(0);
-  return lowest_modes(rod.K.topLeftCorner(k, k), rod.M.topLeftCorner(k, k)).values;
+/// The lowest stiffnesses, and motions, of K measured by M: all that are negative or nothing, and
+/// some beyond.
+SymmetricModes softest_modes(const MatX& K, const MatX& M, double nothing) {
+  for (int count = 6;; count *= 4) {
+    SymmetricModes modes = lowest_modes(K, M, count);
+    const Eigen::Index found = modes.values.size();
+    if (found < count || modes.values[found - 1] > nothing) return modes;
+  }
 }
 
 /// Signs of a rod with its ends held. Most rods are stable by far, which a triangular decomposition
@@ -46,7 +49,7 @@ Signs held_signs(const ReducedRod& rod, double nothing) {
   if (k == 0) return {};
   const auto K = rod.K.topLeftCorner(k, k), M = rod.M.topLeftCorner(k, k);
   if (is_positive_definite(K - nothing * M)) return {};
-  return signs(held_stiffnesses(rod), nothing);
+  return signs(softest_modes(K, M, nothing).values, nothing);
 }
 
 double nothing_of(const Robot& robot) {
@@ -77,11 +80,11 @@ Stability judge(const StaticStudy& study) {
   out.potential = v.potential;
   const double nothing = nothing_of(robot);
   for (const ReducedRod& rod : v.rods)
-    out.in_rods.push_back(signs(held_stiffnesses(rod), nothing).negative);
+    out.in_rods.push_back(held_signs(rod, nothing).negative);
   MatX K, M;
   v.assemble(K, M);
   if (K.rows() == 0) return out;
-  const SymmetricModes modes = lowest_modes(K, M);
+  const SymmetricModes modes = softest_modes(K, M, nothing);
   if (modes.values.size() == 0) return out;
   const Signs all = signs(modes.values, nothing);
   out.unstable = all.negative;

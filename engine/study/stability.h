@@ -26,7 +26,7 @@ struct Stability {
   /// displacement of all rods' material.
   double softest = 0;
   std::vector<Vec6> softest_bodies;  ///< (rotation, translation) per body of the Newton system
-  VecX stiffnesses;                  ///< of all motions so measured, ascending; by judge() alone
+  VecX stiffnesses;  ///< so measured, ascending: all below some stable ones; by judge() alone
   /// Stiffness of bodies, each about its centre of mass (rotation, translation), and of joint
   /// coordinates, with rods in equilibrium; world axes; N/m, N, N m.
   MatX body_stiffness;

@@ -45,6 +45,17 @@ void Track::set_start(const VecX& x_start, const VecX& v_start) {
   A0.setZero();
 }
 
+void Track::visit(Archive& archive) {
+  for (VecX* q : {&x, &x_t, &v, &a, &x_h, &v_h, &x0, &x_t0, &v0, &a0, &x1, &v1, &A0, &A})
+    archive(*q);
+}
+
+void Stepper::visit(Archive& archive) {
+  archive(fresh_);
+  archive(h_);
+  archive(h_last_);
+}
+
 int Stepper::begin_step(double h, const std::vector<Track*>& tracks) {
   h_ = h;
   table_ = fresh_ && kind() != SchemeKind::kBackwardEuler ? &sdirk3() : table_of(kind());

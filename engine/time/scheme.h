@@ -16,6 +16,7 @@
 
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/math/types.h"
 #include "engine/model/solver_spec.h"
 
@@ -27,6 +28,12 @@ struct StageRates {
   bool body_rates = true;  ///< rotations: v = J_r(x) x_t (false for generalised-alpha: v = x_t)
 
   bool dynamic() const { return c_v != 0; }
+
+  void visit(Archive& archive) {
+    archive(c_v);
+    archive(c_w);
+    archive(body_rates);
+  }
 };
 
 /// A diagonally implicit Runge-Kutta table, stiffly accurate (b = last row of a).
@@ -64,6 +71,8 @@ struct Track {
   void resize(Eigen::Index n);
   /// Sets the state at the start of the first step.
   void set_start(const VecX& x_start, const VecX& v_start);
+  /// Without what begin_step() and the stages compute anew.
+  void visit(Archive& archive);
 };
 
 struct SchemeChoice {
@@ -113,6 +122,8 @@ class Stepper {
 
   /// The scheme that the current step really uses ("sdirk3" for a starter).
   const char* step_name() const;
+
+  void visit(Archive& archive);
 
  private:
   struct Multistep {

@@ -145,6 +145,18 @@ void check_reach(Reading& r) {
   }
 }
 
+// some 10 kB a cell: 2 GB
+constexpr std::size_t kMostCells = 200'000;
+
+void check_size(Reading& r) {
+  const auto points = static_cast<std::size_t>(r.scene.solver.points.value_or(1));
+  const std::size_t rods = r.scene.rods.size();
+  if (points * rods > kMostCells)
+    r.report.error("E509", node_of_rod(r, 0),
+                   std::to_string(rods) + " rods of " + std::to_string(points) +
+                       " points are more than " + std::to_string(kMostCells) + " points");
+}
+
 struct Extremes {
   double least, most, t_least, t_most;
 };
@@ -242,6 +254,28 @@ void check_drives(Reading& r) {
   }
 }
 
+// A resolution that no rod's method knows would be dropped silently; with auto the resolution given
+// decides the method.
+void check_space(Reading& r) {
+  const SolverSpec& solver = r.scene.solver;
+  std::set<Method> used;
+  for (const RodSpec& rod : r.scene.rods)
+    used.insert(rod.method.value_or(solver.method));
+  if (used.empty() || used.count(Method::kAuto)) return;
+  const auto belongs = [&](bool given, const char* key, std::set<Method> owners) {
+    const bool read = std::any_of(owners.begin(), owners.end(),
+                                  [&](Method method) { return used.count(method) > 0; });
+    if (given && !read)
+      r.report.at(Severity::kNote, "W508", solver.space_place, 5,
+                  std::string(key) + " of <space> belongs to another method than the rods'");
+  };
+  belongs(solver.points.has_value(), "points", {Method::kShooting});
+  belongs(solver.integrator.has_value(), "integrator", {Method::kShooting});
+  belongs(solver.order.has_value(), "order", {Method::kStrain});
+  belongs(solver.degree.has_value(), "degree", {Method::kCollocation});
+  belongs(solver.elements.has_value(), "elements", {Method::kStrain, Method::kCollocation});
+}
+
 }  // namespace
 
 void check_physics(Reading& r) {
@@ -249,8 +283,10 @@ void check_physics(Reading& r) {
   check_masses(r);
   check_effect_data(r, world);
   check_plausibility(r);
+  check_size(r);
   check_reach(r);
   check_drives(r);
+  check_space(r);
 }
 
 }  // namespace cprsim

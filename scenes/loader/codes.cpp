@@ -65,6 +65,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"W505", "joint limits that nothing enforces in this version"},
       {"W506", "rods pass through obstacles that move in this version"},
       {"W507", "a quaternion or direction was not of unit length and has been normalised"},
+      {"W508", "a resolution that belongs to a method no rod uses"},
       {"W511", "data for an effect that is not listed"},
       {"W590", "elements that have no effect in a headless simulation"},
       {"W591", "elements of other namespaces, skipped"},

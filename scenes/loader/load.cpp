@@ -79,6 +79,7 @@ void read_world(Reading& reading, const Node& world) {
   read_rods(reading, world);
   read_profiles(reading, world);
   read_actions(reading, world);
+  read_targets(reading);
   read_views(reading, world);
   check_physics(reading);
   check_contact(reading);

@@ -227,6 +227,14 @@ Node& physics_of(Node& world) {
   return world.need("physics");
 }
 
+// what the command line asks for holds for every rod
+void forget_methods(Node& node) {
+  if (node.name == "cprsim:rod" || node.name == "cprsim:rod_class")
+    std::erase_if(node.attributes, [](const Attribute& a) { return a.name == "method"; });
+  for (const auto& child : node.children)
+    forget_methods(*child);
+}
+
 void set_text(Node& node, double value) {
   node.text = format_number(value);
   node.text_place = {};
@@ -243,7 +251,10 @@ void apply_overrides(Node& world, const LoadOptions& options, Reporter& report) 
   if (options.accuracy || options.method || options.step) {
     Node& solver = physics_of(world).need("cprsim:solver");
     if (!solver.attribute("method")) solver.set_attribute("method", "auto");
-    if (options.method) solver.set_attribute("method", *options.method);
+    if (options.method) {
+      forget_methods(world);
+      solver.set_attribute("method", *options.method);
+    }
     if (options.accuracy) set_text(solver.need("accuracy"), *options.accuracy);
     if (options.step) {
       set_text(physics_of(world).need("max_step_size"), *options.step);

@@ -307,6 +307,8 @@ void read_rods(Reading& r, const Node&) {
     read_ends(r, entry, rod);
     const Chain chain = inheritance(r, entry);
     if (!chain.empty()) {
+      for (auto node = chain.rbegin(); node != chain.rend(); ++node)
+        if (const auto method = method_attribute(**node)) rod.method = method;
       read_section(r, chain, rod);
       read_material(r, chain, rod);
       read_stiffness(chain, rod);

@@ -36,6 +36,10 @@ std::string mean(const std::string& name) {
 namespace {
 
 constexpr int kMostPoints = 10'000;
+// beyond these a rod has more unknowns than its dense equations can be solved with in a second
+constexpr int kHighestOrder = 40, kMostElements = 400;
+// of splines: below, positions and forces would not be smooth; above, engine/math/bspline.h ends
+constexpr int kLowestDegree = 2, kHighestDegree = 8;
 constexpr double kMostSteps = 1e8;
 
 const Node* chosen_physics(const Node& world) {
@@ -69,6 +73,10 @@ constexpr Word<ArcIntegrator> kIntegrators[] = {{"euler", ArcIntegrator::kEuler}
                                                 {"gauss2", ArcIntegrator::kGauss2},
                                                 {"gauss4", ArcIntegrator::kGauss4},
                                                 {"gauss6", ArcIntegrator::kGauss6}};
+constexpr Word<Method> kMethods[] = {{"auto", Method::kAuto},
+                                     {"shooting", Method::kShooting},
+                                     {"strain", Method::kStrain},
+                                     {"collocation", Method::kCollocation}};
 constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwardEuler},
                                          {"bdf2", SchemeKind::kBdf2},
                                          {"bdf_alpha", SchemeKind::kBdfAlpha},
@@ -79,10 +87,22 @@ constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwar
 
 void read_space(Reading& r, const Node& node) {
   SolverSpec& solver = r.scene.solver;
-  solver.points = optional_count(node, "points");
-  if (solver.points && *solver.points > kMostPoints)
-    r.report.bad_value("E509", node, *node.attribute("points"), "at most 10000 points per rod");
+  solver.space_place = node.place;
+  const auto count = [&](const char* key, int most, int least = 1) {
+    const auto value = optional_count(node, key);
+    if (value && *value > most)
+      r.report.bad_value("E509", node, *node.attribute(key),
+                         std::string(key) + " is at most " + std::to_string(most));
+    if (value && *value < least)
+      r.report.bad_value("E509", node, *node.attribute(key),
+                         std::string(key) + " is at least " + std::to_string(least));
+    return value;
+  };
+  solver.points = count("points", kMostPoints);
   solver.integrator = choose(kIntegrators, node.value("integrator"));
+  solver.order = count("order", kHighestOrder);
+  solver.degree = count("degree", kHighestDegree, kLowestDegree);
+  solver.elements = count("elements", kMostElements);
 }
 
 void in_range(Reading& r, const Node& node, const char* key, double low, double high) {
@@ -120,7 +140,7 @@ void read_time(Reading& r, const Node& node) {
 void read_solver(Reading& r, const Node& node) {
   SolverSpec& solver = r.scene.solver;
   solver.place = node.place;
-  solver.method = node.value("method") == "shooting" ? Method::kShooting : Method::kAuto;
+  solver.method = method_attribute(node).value_or(Method::kAuto);
   if (const Node* accuracy = node.child("accuracy")) {
     solver.accuracy = number_of(accuracy, 0);
     if (*solver.accuracy < 1e-12 || *solver.accuracy > 1)
@@ -229,6 +249,10 @@ void check_step(Reading& r, const Node& where) {
 }
 
 }  // namespace
+
+std::optional<Method> method_attribute(const Node& node) {
+  return choose(kMethods, node.value("method"));
+}
 
 void read_settings(Reading& r, const Node& world) {
   r.scene.name = world.value("name");

@@ -36,12 +36,16 @@ Vec3 vec3_of(const Node* node, const Vec3& fallback);
 double number_attribute(const Node& node, std::string_view key, double fallback);
 std::optional<double> optional_number(const Node& node, std::string_view key);
 
+/// Of a solver, a rod or a rod class.
+std::optional<Method> method_attribute(const Node& node);
+
 void read_settings(Reading& reading, const Node& world);  // gravity, physics, effects, simulation
 void read_bodies(Reading& reading, const Node& world);    // links
 void read_joints(Reading& reading, const Node& world);    // rigid joints
 void read_rods(Reading& reading, const Node& world);      // rods and their classes
 void read_profiles(Reading& reading, const Node& world);
 void read_actions(Reading& reading, const Node& world);  // drives, loads, initial velocities
+void read_targets(Reading& reading);                      // after the drives
 void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings
 void read_outputs(Reading& reading, const Node& world);  // videos, records, expectations, sweeps
 void check_physics(Reading& reading);                    // what only the whole scene can tell

@@ -46,9 +46,20 @@ class Scanner {
     at_ = found == std::string::npos ? text_.size() : found + end.size();
   }
 
+  // XML forbids "--" within a comment: two comments, one of them not closed, would hide what lies
+  // between them
+  void comment() {
+    const std::size_t open = at_;
+    const std::size_t dashes = text_.find("--", at_ + 4);
+    at_ = dashes == std::string::npos ? open : dashes;
+    if (dashes == std::string::npos) return refuse("E201", "this comment has no end");
+    if (!starts("-->")) return refuse("E201", "'--' within a comment; was the one before closed?");
+    at_ += 3;
+  }
+
   void one_markup() {
     if (starts("<!--")) {
-      skip_past("-->");
+      comment();
     } else if (starts("<![CDATA[")) {
       skip_past("]]>");
     } else if (starts("<!")) {

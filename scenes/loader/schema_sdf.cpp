@@ -10,8 +10,8 @@ using T = ValueType;
 using S = Status;
 
 constexpr auto kPosed =
-    "model link frame joint cprsim:joint include collision visual inertial light gui_camera base "
-    "tip";
+    "model link frame joint cprsim:joint cprsim:target include collision visual inertial light "
+    "gui_camera base tip";
 
 std::vector<ElementRule> world_elements() {
   return {

@@ -79,6 +79,41 @@ TEST(Options, ReplaceDurationStepAccuracyAndMethod) {
   EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E306"});
 }
 
+TEST(Options, TakeAMethodForEveryRod) {
+  const std::string text = scene_text(R"(
+    <cprsim:rod name="other" class="steel" method="auto">
+      <base attached_to="base" joint="fixed"/><length>0.3</length></cprsim:rod>)");
+  const auto scene = load_text(text).scene;
+  ASSERT_TRUE(scene);
+  EXPECT_FALSE(scene->rods[0].method);
+  EXPECT_EQ(scene->rods[1].method, Method::kAuto);
+  LoadOptions options;
+  options.method = "shooting";
+  const auto replaced = load_text(text, options).scene;
+  ASSERT_TRUE(replaced);
+  EXPECT_FALSE(replaced->rods[1].method);
+  EXPECT_EQ(replaced->solver.method, Method::kShooting);
+}
+
+TEST(Options, KeepAResolutionForTheMethodItBelongsTo) {
+  LoadOptions options;
+  options.method = "shooting";
+  const auto solved = [](const std::string& space) {
+    std::string text = scene_text();
+    const std::string before = "</max_step_size>";
+    return text.insert(text.find(before) + before.size(),
+                       "<cprsim:solver method=\"auto\"><space " + space + "/></cprsim:solver>");
+  };
+  const LoadResult strain = load_text(solved("order=\"8\" points=\"5\""), options);
+  ASSERT_TRUE(strain.scene) << to_text(strain.diagnostics);
+  EXPECT_EQ(strain.scene->solver.order, 8);
+  EXPECT_EQ(strain.scene->solver.points, 5);
+  EXPECT_TRUE(has_code(strain, "W508")) << "order is no setting of shooting";
+  EXPECT_FALSE(has_code(load_text(solved("points=\"5\""), options), "W508"));
+  EXPECT_FALSE(has_code(load_text(solved("order=\"8\"")), "W508"));
+  EXPECT_EQ(error_codes(load_text(solved("order=\"80\""))), std::vector<std::string>{"E509"});
+}
+
 TEST(Options, SwitchEffects) {
   LoadOptions options;
   options.with = {"shear"};

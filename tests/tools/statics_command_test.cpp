@@ -57,6 +57,35 @@ TEST(SolveCommand, InverseAndForwardAgree) {
   EXPECT_NEAR(position[2].get<double>(), 0.39, 1e-9);
 }
 
+TEST(SolveCommand, BringsAFrameToTheTargetOfItsScene) {
+  const std::string scene =
+      "solve " + std::string(CPRSIM_SOURCE_DIR) + "/scenes/inverse/csg_published.xml";
+  const Answer answer = ask(scene);
+  ASSERT_EQ(answer.code, 0);
+  // leg lengths on which two independent solvers agree to 1e-10 m
+  const double lengths[] = {0.3973263874, 0.3973263874, 0.3997201023,
+                            0.4216240113, 0.4216240113, 0.3997201023};
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(answer.json["drives"]["robot::leg_" + std::to_string(i + 1) + ".length"]["value"]
+                    .get<double>(),
+                lengths[i], 1e-8);
+  const Answer forward = ask(scene + " --as-it-is");
+  ASSERT_EQ(forward.code, 0);
+  EXPECT_EQ(forward.json["drives"]["robot::leg_1.length"]["value"].get<double>(), 0.4);
+  EXPECT_EQ(ask(scene + " --as-it-is --pose robot::platform=0,0,0.4").code, 2);
+}
+
+TEST(SolveCommand, ChangesOnlyTheDrivesThatTheTargetFrees) {
+  const std::string scene = "solve " + std::string(CPRSIM_SOURCE_DIR) +
+                            "/scenes/inverse/csg_published.xml --set 'robot/target/@freedoms=x z' "
+                            "--set 'robot/target/@free=leg_3 leg_4 leg_5 leg_6'";
+  const Answer answer = ask(scene);
+  ASSERT_EQ(answer.code, 0);
+  EXPECT_NEAR(answer.json["links"]["robot::platform"]["position"][2].get<double>(), 0.4, 1e-9);
+  EXPECT_EQ(answer.json["drives"]["robot::leg_2.length"]["value"].get<double>(), 0.4);
+  EXPECT_NE(answer.json["drives"]["robot::leg_3.length"]["value"].get<double>(), 0.4);
+}
+
 TEST(SolveCommand, SaysThatAPoseIsOutOfReach) {
   const Answer answer = ask("solve " + kRobots +
                             "stewart_gough.xml --pose robot::platform=0.03,0,0.38,0,0,0 "

@@ -2,7 +2,6 @@
 // cprsim check: reads and validates scenes, all mistakes of all files.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "tools/cprsim/commands.h"
@@ -31,18 +30,16 @@ int check_command(const Words& words) {
   std::vector<std::string> paths;
   SceneOptions options;
   ConsoleOptions console_options;
-  CLI::App app(
+  CommandLine line(
+      "cprsim check",
       "Reads and validates scenes without simulating them; tells all mistakes, not the first.\n\n"
       "Examples\n"
       "  cprsim check scenes/robots/*.xml\n"
-      "  cprsim check scene.xml --with shear --error-format gcc",
-      "cprsim check");
-  app.add_option("SCENE", paths, "Scene files; - reads standard input")
-      ->required()
-      ->type_name("...");
-  add_scene_options(app, options);
-  add_console_options(app, console_options);
-  if (const auto code = parse(app, words)) return *code;
+      "  cprsim check scene.xml --with shear --error-format gcc");
+  line.arguments("SCENE", paths, "Scene files; - reads standard input", true);
+  add_scene_options(line, options);
+  add_console_options(line, console_options);
+  if (const auto code = line.parse(words)) return *code;
 
   const Console console(console_options);
   Json files = Json::array();

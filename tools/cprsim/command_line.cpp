@@ -28,23 +28,18 @@ std::optional<T> to_number(const std::string& text) {
 }
 
 template <typename Enum>
-void add_choice(CLI::App& app, const std::string& name, Enum& value, const std::string& help,
+void add_choice(CommandLine& line, const std::string& name, Enum& value, const std::string& help,
                 const std::map<std::string, Enum>& choices) {
-  std::vector<std::string> words;
-  for (const auto& [word, meaning] : choices)
-    words.push_back(word);
-  app.add_option_function<std::string>(
-         name,
-         [&value, choices, words, name](const std::string& word) {
-           const auto found = choices.find(word);
-           if (found == choices.end()) {
-             throw CLI::ValidationError(
-                 name, fmt::format("'{}' is none of {}", word, fmt::join(words, ", ")));
-           }
-           value = found->second;
-         },
-         help)
-      ->type_name("WHICH");
+  line.one(name, "WHICH", help, [&value, choices](const std::string& word) {
+    const auto found = choices.find(word);
+    if (found == choices.end()) {
+      std::vector<std::string> words;
+      for (const auto& [choice, meaning] : choices)
+        words.push_back(choice);
+      throw UsageError(fmt::format("'{}' is none of {}", word, fmt::join(words, ", ")));
+    }
+    value = found->second;
+  });
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -56,70 +51,119 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// @param name as it was declared: "-j,--jobs"
+CLI::Option* option_named(CLI::App& app, const std::string& name) {
+  return app.get_option(name.substr(name.rfind(',') + 1));
+}
+
 int complain(const CLI::App& app, const std::string& message) {
-  fmt::print(stderr, "{}: {}\nSee '{} --help'.\n", app.get_name(), message, app.get_name());
+  write_to_stderr(
+      fmt::format("{}: {}\nSee '{} --help'.\n", app.get_name(), message, app.get_name()));
   return kExitUsage;
 }
 
 }  // namespace
 
-void add_console_options(CLI::App& app, ConsoleOptions& options) {
-  app.add_flag("-q,--quiet", options.quiet, "No summary and no progress; twice: errors only");
-  app.add_flag("-v,--verbose", options.verbose, "Also say what is merely worth knowing");
-  app.add_flag("--json", options.json, "Results as JSON on standard output");
-  add_choice<When>(app, "--color", options.color, "auto, always or never",
-                   {{"auto", When::kAuto}, {"always", When::kAlways}, {"never", When::kNever}});
-  add_choice<ProgressStyle>(app, "--progress", options.progress, "auto, bar, plain or none",
-                            {{"auto", ProgressStyle::kAuto},
-                             {"bar", ProgressStyle::kBar},
-                             {"plain", ProgressStyle::kPlain},
-                             {"none", ProgressStyle::kNone}});
-  if (const char* github = std::getenv("GITHUB_ACTIONS"); github != nullptr && *github != '\0') {
-    options.error_format = ErrorFormat::kGithub;
-  }
-  add_choice<ErrorFormat>(app, "--error-format", options.error_format, "text, gcc, json or github",
-                          {{"text", ErrorFormat::kText},
-                           {"gcc", ErrorFormat::kGcc},
-                           {"json", ErrorFormat::kJson},
-                           {"github", ErrorFormat::kGithub}});
+struct CommandLine::Parser {
+  CLI::App app;
+};
+
+CommandLine::CommandLine(const std::string& name, const std::string& about)
+    : parser_(std::make_unique<Parser>()) {
+  parser_->app.name(name);
+  parser_->app.description(about);
 }
 
-void add_number(CLI::App& app, const std::string& name, std::optional<double>& value,
-                const std::string& help, const std::string& demand,
-                const std::function<bool(double)>& fits) {
-  app.add_option_function<std::string>(
-         name,
-         [&value, name, demand, fits](const std::string& text) {
-           value = to_number<double>(text);
-           if (!value || !std::isfinite(*value) || !fits(*value)) {
-             throw CLI::ValidationError(name, fmt::format("'{}' is not a number {}", text, demand));
-           }
-         },
-         help)
-      ->type_name("NUMBER");
+CommandLine::~CommandLine() = default;
+
+void CommandLine::scene(std::string& path) {
+  argument("SCENE", path, "The scene file; - reads standard input");
 }
 
-void add_count(CLI::App& app, const std::string& name, int& value, int least,
-               const std::string& help) {
-  app.add_option_function<std::string>(
-         name,
-         [&value, name, least](const std::string& text) {
-           const auto number = to_number<int>(text);
-           if (!number || *number < least) {
-             throw CLI::ValidationError(
-                 name, fmt::format("'{}' is not a whole number from {} on", text, least));
-           }
-           value = *number;
-         },
-         help)
-      ->type_name("N");
+void CommandLine::argument(const std::string& name, std::string& value, const std::string& help) {
+  parser_->app.add_option(name, value, help)->required()->type_name("");
 }
 
-std::optional<unsigned> whole_number(const std::string& text) {
-  return to_number<unsigned>(text);
+void CommandLine::arguments(const std::string& name, std::vector<std::string>& values,
+                            const std::string& help, bool required) {
+  parser_->app.add_option(name, values, help)->required(required)->type_name("...");
 }
 
-std::optional<int> parse(CLI::App& app, const Words& words) {
+void CommandLine::flag(const std::string& name, bool& value, const std::string& help) {
+  parser_->app.add_flag(name, value, help);
+}
+
+void CommandLine::flag(const std::string& name, int& times, const std::string& help) {
+  parser_->app.add_flag(name, times, help);
+}
+
+void CommandLine::text(const std::string& name, std::string& value, const std::string& type,
+                       const std::string& help) {
+  parser_->app.add_option(name, value, help)->type_name(type);
+}
+
+void CommandLine::texts(const std::string& name, std::vector<std::string>& values,
+                        const std::string& type, const std::string& help) {
+  parser_->app.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+}
+
+void CommandLine::list(const std::string& name, std::vector<std::string>& values,
+                       const std::string& type, const std::string& help) {
+  texts(name, values, type, help);
+  option_named(parser_->app, name)->delimiter(',');
+}
+
+void CommandLine::one(const std::string& name, const std::string& type, const std::string& help,
+                      const std::function<void(const std::string&)>& read) {
+  each(name, type, help, read);
+  option_named(parser_->app, name)->expected(1);
+}
+
+void CommandLine::each(const std::string& name, const std::string& type, const std::string& help,
+                       const std::function<void(const std::string&)>& read) {
+  const auto read_all = [name, read](const std::vector<std::string>& texts) {
+    try {
+      for (const std::string& text : texts)
+        read(text);
+    } catch (const UsageError& error) {
+      throw CLI::ValidationError(name, error.what());
+    }
+  };
+  parser_->app.add_option_function<std::vector<std::string>>(name, read_all, help)
+      ->type_name(type)
+      ->allow_extra_args(false);
+}
+
+void CommandLine::number(const std::string& name, std::optional<double>& value,
+                         const std::string& help, const std::string& demand,
+                         const std::function<bool(double)>& fits) {
+  one(name, "NUMBER", help, [&value, demand, fits](const std::string& text) {
+    value = to_number<double>(text);
+    if (!value || !std::isfinite(*value) || !fits(*value))
+      throw UsageError(fmt::format("'{}' is not a number {}", text, demand));
+  });
+}
+
+void CommandLine::count(const std::string& name, int& value, int least, const std::string& help) {
+  one(name, "N", help, [&value, least](const std::string& text) {
+    const auto number = to_number<int>(text);
+    if (!number || *number < least)
+      throw UsageError(fmt::format("'{}' is not a whole number from {} on", text, least));
+    value = *number;
+  });
+}
+
+void CommandLine::require(const std::string& name) {
+  option_named(parser_->app, name)->required();
+}
+
+void CommandLine::exclude(const std::string& name, const std::string& other) {
+  CLI::App& app = parser_->app;
+  option_named(app, name)->excludes(option_named(app, other));
+}
+
+std::optional<int> CommandLine::parse(const Words& words) {
+  CLI::App& app = parser_->app;
   app.allow_extras();
   try {
     app.parse(Words(words.rbegin(), words.rend()));
@@ -138,6 +182,31 @@ std::optional<int> parse(CLI::App& app, const Words& words) {
   }
   if (!left.empty()) return complain(app, fmt::format("'{}' is one word too many", left.front()));
   return std::nullopt;
+}
+
+void add_console_options(CommandLine& line, ConsoleOptions& options) {
+  line.flag("-q,--quiet", options.quiet, "No summary and no progress; twice: errors only");
+  line.flag("-v,--verbose", options.verbose, "Also say what is merely worth knowing");
+  line.flag("--json", options.json, "Results as JSON on standard output");
+  add_choice<When>(line, "--color", options.color, "auto, always or never",
+                   {{"auto", When::kAuto}, {"always", When::kAlways}, {"never", When::kNever}});
+  add_choice<ProgressStyle>(line, "--progress", options.progress, "auto, bar, plain or none",
+                            {{"auto", ProgressStyle::kAuto},
+                             {"bar", ProgressStyle::kBar},
+                             {"plain", ProgressStyle::kPlain},
+                             {"none", ProgressStyle::kNone}});
+  if (const char* github = std::getenv("GITHUB_ACTIONS"); github != nullptr && *github != '\0') {
+    options.error_format = ErrorFormat::kGithub;
+  }
+  add_choice<ErrorFormat>(line, "--error-format", options.error_format, "text, gcc, json or github",
+                          {{"text", ErrorFormat::kText},
+                           {"gcc", ErrorFormat::kGcc},
+                           {"json", ErrorFormat::kJson},
+                           {"github", ErrorFormat::kGithub}});
+}
+
+std::optional<unsigned> whole_number(const std::string& text) {
+  return to_number<unsigned>(text);
 }
 
 std::string not_one_of(const std::string& word, const std::string& noun,

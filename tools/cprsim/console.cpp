@@ -49,7 +49,7 @@ void Console::say(const std::string& text) const {
 }
 
 void Console::remark(const std::string& text) const {
-  if (options_.verbose) fmt::print(stderr, "{}\n", text);
+  if (options_.verbose) write_to_stderr(fmt::format("{}\n", text));
 }
 
 void Console::warn(const std::string& text) const {
@@ -62,9 +62,9 @@ void Console::error(const std::string& text) const {
 
 void Console::print(const char* word, const char* hue, const std::string& text) const {
   if (color_) {
-    fmt::print(stderr, "cprsim: \033[{}m{}:\033[0m {}\n", hue, word, text);
+    write_to_stderr(fmt::format("cprsim: \033[{}m{}:\033[0m {}\n", hue, word, text));
   } else {
-    fmt::print(stderr, "cprsim: {}: {}\n", word, text);
+    write_to_stderr(fmt::format("cprsim: {}: {}\n", word, text));
   }
 }
 
@@ -76,19 +76,19 @@ void Console::show(const std::vector<Diagnostic>& diagnostics) const {
     shown.push_back(d);
   }
   if (options_.error_format == ErrorFormat::kText) {
-    fmt::print(stderr, "{}", to_text(shown, color_));
+    write_to_stderr(to_text(shown, color_));
     return;
   }
   for (const Diagnostic& d : shown) {
     switch (options_.error_format) {
       case ErrorFormat::kJson:
-        fmt::print(stderr, "{}\n", to_json(d));
+        write_to_stderr(fmt::format("{}\n", to_json(d)));
         break;
       case ErrorFormat::kGithub:
-        fmt::print(stderr, "{}", to_github(d));
+        write_to_stderr(to_github(d));
         break;
       default:
-        fmt::print(stderr, "{}", to_gcc(d));
+        write_to_stderr(to_gcc(d));
         break;
     }
   }

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <tinyxml2.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/Version.hpp>
 #include <Eigen/Core>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -62,10 +62,10 @@ Json versions() {
 
 int doctor_command(const Words& words) {
   ConsoleOptions console_options;
-  CLI::App app("Says what this machine can do: draw without a display, encode films.",
-               "cprsim doctor");
-  add_console_options(app, console_options);
-  if (const auto code = parse(app, words)) return *code;
+  CommandLine line("cprsim doctor",
+                   "Says what this machine can do: draw without a display, encode films.");
+  add_console_options(line, console_options);
+  if (const auto code = line.parse(words)) return *code;
 
   const Console console(console_options);
   const Finding drawing = look_at_drawing(), filming = look_at_filming();
@@ -80,10 +80,10 @@ int doctor_command(const Words& words) {
   }
   if (console.json()) write_to_stdout(report.dump(2) + "\n");
 
-  const auto line = [](const char* what, const Finding& finding) {
+  const auto row = [](const char* what, const Finding& finding) {
     return fmt::format("{:<9} {:<8} {}\n", what, finding.good ? "works" : "missing", finding.text);
   };
-  console.say(line("drawing", drawing) + line("filming", filming));
+  console.say(row("drawing", drawing) + row("filming", filming));
   for (const auto& [name, value] : report["versions"].items()) {
     console.say(fmt::format("{:<15} {}\n", name, value.get<std::string>()));
   }

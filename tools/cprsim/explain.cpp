@@ -2,8 +2,6 @@
 // cprsim explain: what a diagnostic's code means, what an element may hold.
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "scenes/loader/diagnostic.h"
 #include "scenes/loader/schema.h"
 #include "tools/cprsim/commands.h"
@@ -26,23 +24,23 @@ std::string all_codes() {
 
 int explain_command(const Words& words) {
   std::vector<std::string> names;
-  CLI::App app(
+  CommandLine line(
+      "cprsim explain",
       "Explains codes of diagnostics and elements of the scene language; alone, lists all "
       "codes.\n\n"
       "Examples\n"
       "  cprsim explain E301\n"
-      "  cprsim explain cprsim:rod",
-      "cprsim explain");
-  app.add_option("NAME", names, "A code or an element")->type_name("...");
-  if (const auto code = parse(app, words)) return *code;
+      "  cprsim explain cprsim:rod");
+  line.arguments("NAME", names, "A code or an element", false);
+  if (const auto code = line.parse(words)) return *code;
 
   std::string text = names.empty() ? all_codes() : "";
   for (const std::string& name : names) {
     const std::string_view meaning = explain_code(name);
     const std::string element = meaning.empty() ? explain_element(name) : "";
     if (meaning.empty() && element.empty()) {
-      fmt::print(stderr, "cprsim explain: '{}' is neither a code nor an element of a scene\n",
-                 name);
+      write_to_stderr(
+          fmt::format("cprsim explain: '{}' is neither a code nor an element of a scene\n", name));
       return kExitUsage;
     }
     text += meaning.empty() ? element : fmt::format("{}  {}\n", name, meaning);

@@ -4,8 +4,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-
 #include "scenes/loader/values.h"
 
 namespace cprsim {
@@ -31,20 +29,14 @@ Exit codes: 0 every value is determined; 1 fitted, but a value is not observable
 2 usage or table; 3 scene; 4 no equilibrium at the start, or no convergence; 5 files
 )";
 
-void add_texts(CLI::App& app, const std::string& name, std::vector<std::string>& list,
-               const std::string& type, const std::string& help) {
-  app.add_option_function<std::vector<std::string>>(
-         name,
-         [&list, name, type](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) {
-             if (text.find('=') == std::string::npos || text.front() == '=')
-               throw CLI::ValidationError(name, "'" + text + "' is not of the form " + type);
-             list.push_back(text);
-           }
-         },
-         help)
-      ->type_name(type)
-      ->allow_extra_args(false);
+/// Assignments: COLUMN=...
+void add_assignments(CommandLine& line, const std::string& name, std::vector<std::string>& list,
+                     const std::string& type, const std::string& help) {
+  line.each(name, type, help, [&list, type](const std::string& text) {
+    if (text.find('=') == std::string::npos || text.front() == '=')
+      throw UsageError("'" + text + "' is not of the form " + type);
+    list.push_back(text);
+  });
 }
 
 }  // namespace
@@ -93,39 +85,30 @@ std::variant<FitOption, std::string> parse_fit_option(const std::string& text) {
 std::variant<IdentifyOptions, int> parse_identify_options(const Words& words) {
   IdentifyOptions options;
   std::optional<double> level;
-  CLI::App app(kAbout, "cprsim identify");
-  app.add_option("SCENE", options.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  app.add_option("DATA", options.data, "The measurements, a CSV file")->required()->type_name("");
-  app.add_option_function<std::vector<std::string>>(
-         "--fit",
-         [&](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) {
-             auto option = parse_fit_option(text);
-             if (const auto* why = std::get_if<std::string>(&option))
-               throw CLI::ValidationError("--fit", *why);
-             options.fit.push_back(std::get<FitOption>(std::move(option)));
-           }
-         },
-         "A value to find; several paths share one. Repeatable")
-      ->required()
-      ->type_name("PATH[,PATH][=START[:LOW:HIGH]]")
-      ->allow_extra_args(false);
-  add_texts(app, "--input", options.input, "COLUMN=PATH",
-            "This column is set into the scene, row by row");
-  add_texts(app, "--match", options.match, "COLUMN=CHANNEL", "This column was measured");
-  add_texts(app, "--sigma", options.sigma, "COLUMN=VALUE",
-            "Standard deviation, in the column's unit");
-  add_number(app, "--confidence", level, "Of the intervals (default 0.95)", "between 0 and 1",
-             [](double value) { return value > 0 && value < 1; });
-  add_count(app, "--max-iterations", options.max_iterations, 1, "Of the search (default 100)");
-  app.add_option("-o,--output", options.output, "Where results go (default out/<scene>_identify)")
-      ->type_name("DIR");
-  app.add_flag("--no-plot", options.no_plot, "Write no identify.svg");
-  add_scene_options(app, options.scene);
-  add_console_options(app, options.console);
-  if (const auto code = parse(app, words)) return *code;
+  CommandLine line("cprsim identify", kAbout);
+  line.scene(options.path);
+  line.argument("DATA", options.data, "The measurements, a CSV file");
+  line.each("--fit", "PATH[,PATH][=START[:LOW:HIGH]]",
+            "A value to find; several paths share one. Repeatable", [&](const std::string& text) {
+              auto option = parse_fit_option(text);
+              if (const auto* why = std::get_if<std::string>(&option)) throw UsageError(*why);
+              options.fit.push_back(std::get<FitOption>(std::move(option)));
+            });
+  line.require("--fit");
+  add_assignments(line, "--input", options.input, "COLUMN=PATH",
+                  "This column is set into the scene, row by row");
+  add_assignments(line, "--match", options.match, "COLUMN=CHANNEL", "This column was measured");
+  add_assignments(line, "--sigma", options.sigma, "COLUMN=VALUE",
+                  "Standard deviation, in the column's unit");
+  line.number("--confidence", level, "Of the intervals (default 0.95)", "between 0 and 1",
+              [](double value) { return value > 0 && value < 1; });
+  line.count("--max-iterations", options.max_iterations, 1, "Of the search (default 100)");
+  line.text("-o,--output", options.output, "DIR",
+            "Where results go (default out/<scene>_identify)");
+  line.flag("--no-plot", options.no_plot, "Write no identify.svg");
+  add_scene_options(line, options.scene);
+  add_console_options(line, options.console);
+  if (const auto code = line.parse(words)) return *code;
   if (level) options.level = *level;
   return options;
 }

@@ -12,7 +12,7 @@
 #include "engine/model/channel.h"
 #include "scenes/loader/load.h"
 #include "tools/cprsim/identify_options.h"
-#include "tools/cprsim/measured_table.h"
+#include "tools/series/measured_table.h"
 
 namespace cprsim {
 

@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "tools/cprsim/advisor.h"
 #include "tools/cprsim/build_simulation.h"
@@ -34,7 +34,10 @@ bool alike(const RodFacts& a, const RodFacts& b) {
         r.shear_x,      r.first_frequency,  r.buckling_load, r.growth_exponent, r.gravity_number,
         r.shear_number, r.extension_number, r.damping_ratio};
   };
-  return numbers(a) == numbers(b) && a.cells == b.cells && a.segments == b.segments;
+  const auto pieces = [](const RodFacts& r) {
+    return std::tuple(r.method, r.method_reason, r.rule, r.elements, r.order, r.segments);
+  };
+  return numbers(a) == numbers(b) && pieces(a) == pieces(b);
 }
 
 std::vector<RodGroup> groups_of(const ProblemFacts& facts) {
@@ -61,8 +64,8 @@ std::string contents_text(const Scene& scene) {
 }
 
 std::string solver_text(const ProblemFacts& facts) {
-  std::string text = fmt::format("  solver     shooting, {}{}",
-                                 facts.planar ? "planar kernel, " : "", facts.integrator);
+  std::string text = "  solver     " + pieces_text(facts);
+  if (facts.planar) text += ", planar";
   if (!facts.scheme.empty()) text += ", " + facts.scheme;
   if (facts.step > 0) text += fmt::format(", step {} s", facts.step);
   return text + fmt::format("; {} body unknowns, {} constraint unknowns\n", facts.body_unknowns,
@@ -155,9 +158,8 @@ std::string rod_text(const Scene& scene, const RodGroup& group) {
       rod.mass, rod.first_frequency, rod.buckling_load);
   text += fmt::format("  EI {:.6g} {:.6g} N m^2, GJ {:.6g} N m^2, EA {:.6g} N, GA {:.6g} N\n",
                       rod.bending_x, rod.bending_y, rod.torsion, rod.axial, rod.shear_x);
-  text += fmt::format("  growth exponent {:.3g}, {} points in {} segment{}, {} unknowns\n",
-                      rod.growth_exponent, rod.cells, rod.segments, rod.segments == 1 ? "" : "s",
-                      rod.unknowns);
+  text += fmt::format("  {}; {} unknowns, growth exponent {:.3g}; {}\n", pieces_text(rod),
+                      rod.unknowns, rod.growth_exponent, rod.method_reason);
   for (const AdviceLine& line : advise(scene, rod)) {
     text += fmt::format("  {:<15} {:<18} {:>9.2g}  {}\n", effect_name(line.effect), line.formula,
                         line.number, to_string(line.advice));
@@ -176,7 +178,11 @@ Json rod_json(const Scene& scene, const RodFacts& rod) {
                {"first_frequency", rod.first_frequency},
                {"buckling_load", rod.buckling_load},
                {"growth_exponent", rod.growth_exponent},
-               {"cells", rod.cells},
+               {"method", method_name(rod.method)},
+               {"method_reason", rod.method_reason},
+               {"rule", rod.rule},
+               {"elements", rod.elements},
+               {"order", rod.order},
                {"segments", rod.segments},
                {"unknowns", rod.unknowns},
                {"advice", Json::array()}};
@@ -197,7 +203,6 @@ Json to_json(const Scene& scene, const ProblemFacts& facts) {
                {"mode", mode_name(scene.simulation.mode)},
                {"duration", scene.simulation.duration},
                {"kernel", facts.planar ? "planar" : "spatial"},
-               {"integrator", facts.integrator},
                {"scheme", facts.scheme},
                {"step", facts.step},
                {"body_unknowns", facts.body_unknowns},
@@ -230,20 +235,18 @@ int info_command(const Words& words) {
   std::string path;
   SceneOptions options;
   ConsoleOptions console_options;
-  CLI::App app(
+  CommandLine line(
+      "cprsim info",
       "Tells what is in a scene and what follows from it, without simulating: stiffness, mass, "
       "first\n"
       "frequency, growth exponents, the effects that are on and those that would matter.\n\n"
       "Examples\n"
       "  cprsim info scene.xml\n"
-      "  cprsim info scene.xml --step 0.001 --json",
-      "cprsim info");
-  app.add_option("SCENE", path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  add_scene_options(app, options);
-  add_console_options(app, console_options);
-  if (const auto code = parse(app, words)) return *code;
+      "  cprsim info scene.xml --step 0.001 --json");
+  line.scene(path);
+  add_scene_options(line, options);
+  add_console_options(line, console_options);
+  if (const auto code = line.parse(words)) return *code;
 
   const Console console(console_options);
   const LoadedScene loaded = load_and_show(path, options, console);

@@ -4,10 +4,14 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <exception>
+#include <new>
 
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/version.h"
+#include "tools/sinks/output_file.h"
 
 namespace cprsim {
 
@@ -21,10 +25,24 @@ extern "C" void on_signal(int signal) {
   received = signal;
 }
 
+void say(const char* text) {
+  write_to_stderr({text, std::strlen(text)});
+}
+
+// Destructors of the JSON library allocate: where there is no memory they end here, not in main().
+[[noreturn]] void on_terminate() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    say("cprsim: error: out of memory\n");
+    _exit(kExitEnvironment);
+  } catch (...) {
+    std::abort();
+  }
+  std::abort();
+}
+
 extern "C" void on_abort(int) {
-  const auto say = [](const char* text) {
-    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) _exit(kExitInternalError);
-  };
   say("cprsim: internal error: a bug in cprsim ");
   say(version().number);
   say(" (");
@@ -36,6 +54,8 @@ extern "C" void on_abort(int) {
 }  // namespace
 
 void watch_signals() {
+  std::set_terminate(on_terminate);
+
   struct sigaction action {};
 
   action.sa_handler = on_signal;

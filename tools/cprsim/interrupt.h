@@ -5,8 +5,8 @@
 
 namespace cprsim {
 
-/// Installs the handlers, and ignores SIGPIPE and SIGXFSZ so that a closed pipe and a file that may
-/// not grow are errors of write().
+/// Installs the handlers, also of the end that lack of memory or a bug may bring, and ignores
+/// SIGPIPE and SIGXFSZ so that a closed pipe and a file that may not grow are errors of write().
 void watch_signals();
 
 /// The signal that asked to stop, or 0.

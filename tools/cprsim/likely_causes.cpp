@@ -39,15 +39,15 @@ void blame_jumps(const Scene& scene, double time, double step, Causes& causes) {
 void blame_resolution(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
   // Gauss collocation keeps growing and decaying solutions apart on any grid; explicit tables do
   // not
-  const bool explicit_table = facts.integrator == "rk4" || facts.integrator == "euler";
-  if (!scene.solver.points || !explicit_table) return;
+  if (!scene.solver.points) return;
   for (const RodFacts& rod : facts.rods) {
+    if (rod.rule != "rk4" && rod.rule != "euler") continue;
     const double needed = std::ceil(kCellsPerGrowth * rod.growth_exponent);
-    if (rod.cells >= needed) continue;
+    if (rod.elements >= needed) continue;
     causes.push_back(fmt::format(
         "rod '{}' has {} points and a growth exponent of {:.3g}: give it at least {:.0f}, or "
         "take gauss6 instead of {}",
-        rod.name, rod.cells, rod.growth_exponent, needed, facts.integrator));
+        rod.name, rod.elements, rod.growth_exponent, needed, rod.rule));
     return;
   }
 }

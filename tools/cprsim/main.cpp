@@ -31,6 +31,7 @@ Examples
   cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0
   cprsim identify scene.xml tips.csv --fit rod/material/youngs_modulus
   cprsim workspace scene.xml --random 1000  what drives reach: stable, within limits
+  cprsim compare out/planar measured.csv    RMS, maximum, lag, a picture
 
 Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
@@ -41,6 +42,7 @@ Commands
   path                     equilibria through folds and branch points
   identify                 fit values of a scene to measurements
   workspace                what a robot reaches: a sweep of drives or poses
+  compare                  a run against a reference trajectory
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -69,6 +71,7 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"path", path_command},
                                Command{"workspace", workspace_command},
                                Command{"identify", identify_command},
+                               Command{"compare", compare_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};
 
@@ -92,7 +95,7 @@ std::size_t first_word(const Words& words) {
 
 int start(const Words& words) {
   if (words.empty()) {
-    fmt::print(stderr, "{}", kHelp);
+    write_to_stderr(kHelp);
     return kExitUsage;
   }
   if (words[0] == "-h" || words[0] == "--help" || words[0] == "help") {
@@ -118,16 +121,16 @@ int start(const Words& words) {
   std::vector<std::string> names;
   for (const Command& c : kCommands)
     names.emplace_back(c.name);
-  fmt::print(stderr, "cprsim: {}\nSee 'cprsim --help'.\n",
-             not_one_of(words[0], "a command", names));
+  write_to_stderr(
+      fmt::format("cprsim: {}\nSee 'cprsim --help'.\n", not_one_of(words[0], "a command", names)));
   return kExitUsage;
 }
 
 int report_bug(const char* what) {
-  fmt::print(stderr,
-             "cprsim: internal error: {}\nThis is a bug in cprsim {} ({}). Please report it with "
-             "the scene and the command line.\n",
-             what, version().number, version().revision);
+  write_to_stderr(fmt::format(
+      "cprsim: internal error: {}\nThis is a bug in cprsim {} ({}). Please report it with "
+      "the scene and the command line.\n",
+      what, version().number, version().revision));
   return kExitInternalError;
 }
 
@@ -137,14 +140,15 @@ int report_bug(const char* what) {
 
 int main(int count, char** arguments) {
   using namespace cprsim;
+  claim_standard_streams();
   watch_signals();
   try {
     return start(Words(arguments + std::min(count, 1), arguments + count));
   } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "cprsim: error: {}\n", error.what());
+    write_to_stderr(fmt::format("cprsim: error: {}\n", error.what()));
     return kExitEnvironment;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "cprsim: error: out of memory\n");
+    write_to_stderr("cprsim: error: out of memory\n");
     return kExitEnvironment;
   } catch (const std::exception& error) {
     return report_bug(error.what());

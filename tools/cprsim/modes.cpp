@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -38,30 +37,27 @@ struct ModesWords {
 };
 
 std::optional<int> read_words(ModesWords& w, const Words& words) {
-  CLI::App app(
+  CommandLine line(
+      "cprsim modes",
       "Natural frequencies and mode shapes of small vibration about the robot's equilibrium, "
       "without "
       "damping.\n\n"
       "Examples\n"
       "  cprsim modes scene.xml\n"
       "  cprsim modes scene.xml --count 12 --json\n"
-      "  cprsim modes scene.xml --mode 2 --video mode_2.mp4 --amplitude 0.02",
-      "cprsim modes");
-  app.add_option("SCENE", w.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  add_count(app, "--count", w.count, 1, "How many modes (default 6)");
-  add_count(app, "--mode", w.film, 1, "The mode that --video shows (default 1)");
-  app.add_option("--video", w.video, "Films two periods of a mode, slowed down to 4 s")
-      ->type_name("FILE");
-  add_number(app, "--amplitude", w.amplitude,
-             "Of the film: the farthest displacement (default: 5 % of the longest rod)",
-             "of metres greater than 0", [](double a) { return a > 0; });
-  add_number(app, "--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
-             [](double t) { return t >= 0; });
-  add_scene_options(app, w.scene);
-  add_console_options(app, w.console);
-  return parse(app, words);
+      "  cprsim modes scene.xml --mode 2 --video mode_2.mp4 --amplitude 0.02");
+  line.scene(w.path);
+  line.count("--count", w.count, 1, "How many modes (default 6)");
+  line.count("--mode", w.film, 1, "The mode that --video shows (default 1)");
+  line.text("--video", w.video, "FILE", "Films two periods of a mode, slowed down to 4 s");
+  line.number("--amplitude", w.amplitude,
+              "Of the film: the farthest displacement (default: 5 % of the longest rod)",
+              "of metres greater than 0", [](double a) { return a > 0; });
+  line.number("--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
+              [](double t) { return t >= 0; });
+  add_scene_options(line, w.scene);
+  add_console_options(line, w.console);
+  return line.parse(words);
 }
 
 double angular_rate(const VibrationMode& mode) {

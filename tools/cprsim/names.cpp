@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cprsim/names.h"
 
+#include <algorithm>
+
 namespace cprsim {
 
 const char* mode_name(Mode mode) {
@@ -21,8 +23,32 @@ const char* method_name(Method method) {
       return "auto";
     case Method::kShooting:
       return "shooting";
+    case Method::kStrain:
+      return "strain";
+    case Method::kCollocation:
+      return "collocation";
   }
   return "";
+}
+
+std::string pieces_text(const RodFacts& rod) {
+  std::string text = std::string(method_name(rod.method)) + ", ";
+  if (rod.method == Method::kShooting)
+    return text + std::to_string(rod.elements) + " points of " + rod.rule;
+  text += std::to_string(rod.elements) + (rod.elements == 1 ? " element of " : " elements of ");
+  return text + rod.rule + " degree " + std::to_string(rod.order);
+}
+
+std::string pieces_text(const ProblemFacts& facts) {
+  std::vector<std::string> kinds;
+  std::string text;
+  for (const RodFacts& rod : facts.rods) {
+    const std::string kind = pieces_text(rod);
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) continue;
+    text += (kinds.empty() ? "" : "; ") + kind;
+    kinds.push_back(kind);
+  }
+  return kinds.empty() ? "no rods" : text;
 }
 
 std::string place_name(const Scene& scene, const Place& place) {

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -56,6 +57,33 @@ void remove_frames(const fs::path& folder) {
   fs::remove(folder, ignored);
 }
 
+/// Of a run that was killed before it could give its report a name.
+bool holds_only_parts(const fs::path& folder) {
+  const auto is_part = [](const fs::directory_entry& entry) {
+    return entry.path().extension() == ".part";
+  };
+  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), is_part);
+}
+
+/// Before anything of an earlier run is removed: the folder takes files, and the disk a report.
+void prove_writable(const fs::path& folder) {
+  constexpr std::size_t kRoom = 1 << 16;
+  const fs::path trial = folder / "trial.part";
+  const auto remove = [&] {
+    std::error_code ignored;
+    fs::remove(trial, ignored);
+  };
+  try {
+    OutputFile file(folder / "trial");
+    file.write(std::string(kRoom, ' '));
+    file.sync();
+  } catch (const OutputError&) {
+    remove();
+    throw;
+  }
+  remove();
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(fs::path path, ReportFile report, bool keep)
@@ -65,8 +93,9 @@ OutputFolder::OutputFolder(fs::path path, ReportFile report, bool keep)
   if (error) throw OutputError("cannot create " + path_.string() + ": " + error.message());
   lock_.take(path_);
   if (fs::exists(path_ / report_.name)) {
+    prove_writable(path_);
     if (!keep) remove_earlier_run();
-  } else if (!fs::is_empty(path_)) {
+  } else if (!holds_only_parts(path_)) {
     throw OutputError(path_.string() + " holds files but no " + report_.name +
                       ", so cprsim did not write them and leaves them "
                       "alone; choose another folder with -o");

@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "tools/cprsim/static_words.h"
 #include "tools/cprsim/study_command.h"
 
@@ -116,48 +114,41 @@ PathSetup pose_line(StaticStudy& study, const PathWords& w) {
 
 std::variant<PathWords, int> read_path_words(const Words& words) {
   PathWords w;
-  CLI::App app(kAbout, "cprsim path");
-  app.add_option("SCENE", w.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  const auto text = [&](const char* name, auto& value, const char* help, const char* type) {
-    return app.add_option(name, value, help)->type_name(type)->allow_extra_args(false);
-  };
-  text("--drive", w.drives, "The drive that changes; with =VALUE several change together",
-       "NAME[=VALUE]");
-  text("--load", w.load, "The component of a load that changes: NAME.force.z, NAME.torque.x",
-       "NAME.COMPONENT");
-  text("--pose", w.pose, "The link or frame whose pose is prescribed; all drives yield", "NAME");
-  text("--from", w.from, "Where the path starts (default: as the scene is)", "VALUE|X,Y,Z,R,P,Y");
-  text("--to", w.to, "Where it leads; angles may end in deg, * leaves a freedom open",
-       "VALUE|X,Y,Z,R,P,Y");
-  app.add_option("--free", w.free, "Drives that yield to --pose (default all)")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->allow_extra_args(false);
-  app.add_flag("--branch", w.branch, "Also follows what crosses the path at its branch points");
-  app.add_flag("--release", w.release,
-               "Where stability is lost, lets the robot go: where does it jump to?");
-  text("--channel", w.channels, "Columns of path.csv (with * globs; default: poses of links)",
-       "PATTERN");
-  text("--plot", w.plot, "The channel that path.svg shows (default: the one that changes most)",
-       "CHANNEL");
-  add_number(app, "--largest-step", w.largest_step,
-             "Largest step of arclength (default 0.1, dimensionless)", "greater than 0",
-             [](double v) { return v > 0; });
-  add_number(app, "--back", w.back,
-             "A path that goes back ends this many ways before its start (default 1)",
-             "of at least 0", [](double v) { return v >= 0; });
-  add_count(app, "--points", w.max_points, 2, "At most so many points (default 500)");
-  add_count(app, "--events", w.max_events, 1, "Ends after so many events (default 50)");
-  add_number(app, "--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
-             [](double t) { return t >= 0; });
-  app.add_option("-o,--output", w.output, "Where results go (default out/<scene>_path)")
-      ->type_name("DIR");
-  app.add_flag("--no-plot", w.no_plot, "Write no path.svg");
-  add_scene_options(app, w.scene);
-  add_console_options(app, w.console);
-  if (const auto code = parse(app, words)) return *code;
+  CommandLine line("cprsim path", kAbout);
+  line.scene(w.path);
+  line.texts("--drive", w.drives, "NAME[=VALUE]",
+             "The drive that changes; with =VALUE several change together");
+  line.text("--load", w.load, "NAME.COMPONENT",
+            "The component of a load that changes: NAME.force.z, NAME.torque.x");
+  line.text("--pose", w.pose, "NAME",
+            "The link or frame whose pose is prescribed; all drives yield");
+  line.text("--from", w.from, "VALUE|X,Y,Z,R,P,Y",
+            "Where the path starts (default: as the scene is)");
+  line.text("--to", w.to, "VALUE|X,Y,Z,R,P,Y",
+            "Where it leads; angles may end in deg, * leaves a freedom open");
+  line.list("--free", w.free, "NAMES", "Drives that yield to --pose (default all)");
+  line.flag("--branch", w.branch, "Also follows what crosses the path at its branch points");
+  line.flag("--release", w.release,
+            "Where stability is lost, lets the robot go: where does it jump to?");
+  line.texts("--channel", w.channels, "PATTERN",
+             "Columns of path.csv (with * globs; default: poses of links)");
+  line.text("--plot", w.plot, "CHANNEL",
+            "The channel that path.svg shows (default: the one that changes most)");
+  line.number("--largest-step", w.largest_step,
+              "Largest step of arclength (default 0.1, dimensionless)", "greater than 0",
+              [](double v) { return v > 0; });
+  line.number("--back", w.back,
+              "A path that goes back ends this many ways before its start (default 1)",
+              "of at least 0", [](double v) { return v >= 0; });
+  line.count("--points", w.max_points, 2, "At most so many points (default 500)");
+  line.count("--events", w.max_events, 1, "Ends after so many events (default 50)");
+  line.number("--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
+              [](double t) { return t >= 0; });
+  line.text("-o,--output", w.output, "DIR", "Where results go (default out/<scene>_path)");
+  line.flag("--no-plot", w.no_plot, "Write no path.svg");
+  add_scene_options(line, w.scene);
+  add_console_options(line, w.console);
+  if (const auto code = line.parse(words)) return *code;
   return w;
 }
 

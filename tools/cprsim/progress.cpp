@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "tools/sinks/output_file.h"
+
 namespace cprsim {
 
 namespace {
@@ -44,9 +46,8 @@ void Progress::update(double time, long steps, long iterations) {
       steps > 0 ? static_cast<double>(iterations) / static_cast<double>(steps) : 0;
   if (style_ == ProgressStyle::kBar) {
     if (on_screen_ && seconds(drawn_) < kRedrawSeconds) return;
-    fmt::print(stderr, "\r{}\033[K",
-               progress_line(name_, time, end_time_, seconds(began_), per_step));
-    std::fflush(stderr);
+    write_to_stderr(fmt::format("\r{}\033[K",
+                                progress_line(name_, time, end_time_, seconds(began_), per_step)));
     drawn_ = now;
     on_screen_ = true;
     return;
@@ -54,13 +55,12 @@ void Progress::update(double time, long steps, long iterations) {
   const int tenths = static_cast<int>(std::floor(10 * time / end_time_ + 1e-9));
   if (tenths <= tenths_) return;
   tenths_ = tenths;
-  fmt::print(stderr, "{}: {:3} %  {:.3f} of {:.3f} s, {:.1f} s wall\n", name_, 10 * tenths, time,
-             end_time_, seconds(began_));
+  write_to_stderr(fmt::format("{}: {:3} %  {:.3f} of {:.3f} s, {:.1f} s wall\n", name_, 10 * tenths,
+                              time, end_time_, seconds(began_)));
 }
 
 void Progress::finish() {
-  if (on_screen_) fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  if (on_screen_) write_to_stderr("\r\033[K");
   on_screen_ = false;
 }
 
@@ -90,8 +90,7 @@ void CountProgress::update(std::size_t done) {
       const long left = std::lround(each * static_cast<double>(total_ - done));
       line += fmt::format("  ETA {}:{:02}", left / 60, left % 60);
     }
-    fmt::print(stderr, "\r{}\033[K", line);
-    std::fflush(stderr);
+    write_to_stderr(fmt::format("\r{}\033[K", line));
     drawn_ = now;
     on_screen_ = true;
     return;
@@ -99,13 +98,12 @@ void CountProgress::update(std::size_t done) {
   const std::size_t tenths = 10 * done / total_;
   if (tenths <= tenths_) return;
   tenths_ = tenths;
-  fmt::print(stderr, "{}: {:3} %  {} of {}, {:.1f} s wall\n", name_, 10 * tenths, done, total_,
-             seconds(began_));
+  write_to_stderr(fmt::format("{}: {:3} %  {} of {}, {:.1f} s wall\n", name_, 10 * tenths, done,
+                              total_, seconds(began_)));
 }
 
 void CountProgress::finish() {
-  if (on_screen_) fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  if (on_screen_) write_to_stderr("\r\033[K");
   on_screen_ = false;
 }
 

@@ -61,6 +61,7 @@ Json effects_json(const Scene& scene) {
 
 Json rod_json(const RodFacts& rod) {
   return {{"name", rod.name},
+          {"length", rod.length},
           {"mass", rod.mass},
           {"stiffness",
            {{"bending_x", rod.bending_x},
@@ -71,7 +72,11 @@ Json rod_json(const RodFacts& rod) {
           {"first_frequency", rod.first_frequency},
           {"buckling_load", rod.buckling_load},
           {"growth_exponent", rod.growth_exponent},
-          {"cells", rod.cells},
+          {"method", method_name(rod.method)},
+          {"method_reason", rod.method_reason},
+          {"rule", rod.rule},
+          {"elements", rod.elements},
+          {"order", rod.order},
           {"segments", rod.segments},
           {"unknowns", rod.unknowns}};
 }
@@ -80,7 +85,6 @@ Json method_json(const Scene& scene, const ProblemFacts& facts) {
   Json method = {{"mode", mode_name(scene.simulation.mode)},
                  {"method", method_name(scene.solver.method)},
                  {"kernel", facts.planar ? "planar" : "spatial"},
-                 {"integrator", facts.integrator},
                  {"scheme", facts.scheme},
                  {"step", facts.step},
                  {"body_unknowns", facts.body_unknowns},

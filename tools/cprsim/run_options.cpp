@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cprsim/run_options.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 
 #include "tools/sinks/csv.h"
@@ -25,38 +24,26 @@ StillOption to_still(const std::string& text) {
 
 std::variant<RunOptions, int> parse_run_options(const Words& words) {
   RunOptions options;
-  CLI::App app(
-      "Simulates a scene and records, films and checks what it asks for.\n\n"
-      "Examples\n"
-      "  cprsim scene.xml\n"
-      "  cprsim run scene.xml --duration 1 --with shear -o try\n"
-      "  cprsim run scene.xml --no-video --still shot.png@0.5",
-      "cprsim run");
-  app.add_option("SCENE", options.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  app.add_option("-o,--output", options.output, "Where results go (default out/<scene>)")
-      ->type_name("DIR");
-  add_scene_options(app, options.scene);
-  CLI::Option* video = app.add_option("--video", options.video, "Film the run into this MP4 file");
-  video->type_name("FILE");
-  app.add_flag("--no-video", options.no_video, "Do not film, whatever the scene says")
-      ->excludes(video);
-  app.add_flag("--no-record", options.no_record, "Write no CSV and VTK files");
-  app.add_option_function<std::vector<std::string>>(
-         "--still",
-         [&](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts)
-             options.stills.push_back(to_still(text));
-         },
-         "A PNG picture at this time, or of the last state")
-      ->type_name("FILE[@TIME]")
-      ->allow_extra_args(false);
-  add_number(app, "--max-wall", options.max_wall, "Stop after this many seconds of wall time",
-             "greater than 0", [](double value) { return value > 0; });
-  add_count(app, "-j,--jobs", options.jobs, 1, "At most this many threads draw the film");
-  add_console_options(app, options.console);
-  if (const auto code = parse(app, words)) return *code;
+  CommandLine line("cprsim run",
+                   "Simulates a scene and records, films and checks what it asks for.\n\n"
+                   "Examples\n"
+                   "  cprsim scene.xml\n"
+                   "  cprsim run scene.xml --duration 1 --with shear -o try\n"
+                   "  cprsim run scene.xml --no-video --still shot.png@0.5");
+  line.scene(options.path);
+  line.text("-o,--output", options.output, "DIR", "Where results go (default out/<scene>)");
+  add_scene_options(line, options.scene);
+  line.text("--video", options.video, "FILE", "Film the run into this MP4 file");
+  line.flag("--no-video", options.no_video, "Do not film, whatever the scene says");
+  line.exclude("--no-video", "--video");
+  line.flag("--no-record", options.no_record, "Write no CSV and VTK files");
+  line.each("--still", "FILE[@TIME]", "A PNG picture at this time, or of the last state",
+            [&](const std::string& text) { options.stills.push_back(to_still(text)); });
+  line.number("--max-wall", options.max_wall, "Stop after this many seconds of wall time",
+              "greater than 0", [](double value) { return value > 0; });
+  line.count("-j,--jobs", options.jobs, 1, "At most this many threads draw the film");
+  add_console_options(line, options.console);
+  if (const auto code = line.parse(words)) return *code;
   return options;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cprsim/scene_options.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
@@ -15,57 +14,34 @@ bool positive(double value) {
   return value > 0;
 }
 
-void add_set(CLI::App& app, SceneOptions& options) {
-  app.add_option_function<std::vector<std::string>>(
-         "--set",
-         [&options](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) {
-             const std::size_t equals = text.find('=');
-             if (equals == std::string::npos || equals == 0) {
-               throw CLI::ValidationError("--set", "'" + text + "' is not of the form PATH=VALUE");
-             }
-             options.set.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-           }
-         },
-         "Change a value, e.g. robot::leg_1/length=0.42")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-}
-
-void add_list(CLI::App& app, const std::string& name, std::vector<std::string>& list,
-              const std::string& help) {
-  app.add_option(name, list, help)->delimiter(',')->type_name("EFFECTS")->allow_extra_args(false);
-}
-
 }  // namespace
 
-void add_scene_options(CLI::App& app, SceneOptions& options) {
-  add_set(app, options);
-  add_list(app, "--with", options.with, "Effects to add, separated by commas");
-  add_list(app, "--without", options.without, "Effects to leave out");
-  add_number(app, "--duration", options.duration, "Simulate this many seconds", "greater than 0",
-             positive);
-  add_number(app, "--step", options.step, "Fixed time step in seconds", "greater than 0", positive);
-  add_number(app, "--accuracy", options.accuracy, "Tip error asked for, in metres",
-             "greater than 0", positive);
-  app.add_option_function<std::string>(
-         "--method", [&options](const std::string& word) { options.method = word; },
-         "How rods are solved, as in <cprsim:solver method>")
-      ->type_name("WHICH");
-  app.add_option_function<std::string>(
-         "--seed",
-         [&options](const std::string& text) {
-           const auto seed = whole_number(text);
-           if (!seed) throw CLI::ValidationError("--seed", "'" + text + "' is not a whole number");
-           options.seed = seed;
-         },
-         "Seed of everything random")
-      ->type_name("N");
-  app.add_option("--resource-path", options.resource_paths, "Where model:// and meshes are found")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  CLI::Option* strict = app.add_flag("--strict", options.strict, "Warnings are errors");
-  app.add_flag("--lax", options.lax, "Unsupported parts of SDF are warnings")->excludes(strict);
+void add_scene_options(CommandLine& line, SceneOptions& options) {
+  line.each("--set", "PATH=VALUE", "Change a value, e.g. robot::leg_1/length=0.42",
+            [&options](const std::string& text) {
+              const std::size_t equals = text.find('=');
+              if (equals == std::string::npos || equals == 0)
+                throw UsageError("'" + text + "' is not of the form PATH=VALUE");
+              options.set.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+            });
+  line.list("--with", options.with, "EFFECTS", "Effects to add, separated by commas");
+  line.list("--without", options.without, "EFFECTS", "Effects to leave out");
+  line.number("--duration", options.duration, "Simulate this many seconds", "greater than 0",
+              positive);
+  line.number("--step", options.step, "Fixed time step in seconds", "greater than 0", positive);
+  line.number("--accuracy", options.accuracy, "Tip error asked for, in metres", "greater than 0",
+              positive);
+  line.one("--method", "WHICH", "How rods are solved, as in <cprsim:solver method>",
+           [&options](const std::string& word) { options.method = word; });
+  line.one("--seed", "N", "Seed of everything random", [&options](const std::string& text) {
+    options.seed = whole_number(text);
+    if (!options.seed) throw UsageError("'" + text + "' is not a whole number");
+  });
+  line.texts("--resource-path", options.resource_paths, "DIR",
+             "Where model:// and meshes are found");
+  line.flag("--strict", options.strict, "Warnings are errors");
+  line.flag("--lax", options.lax, "Unsupported parts of SDF are warnings");
+  line.exclude("--lax", "--strict");
 }
 
 bool LoadedScene::rejected_as_expected() const {

@@ -36,7 +36,7 @@ struct LoadedScene {
   bool rejected_as_expected() const;
 };
 
-void add_scene_options(CLI::App& app, SceneOptions& options);
+void add_scene_options(CommandLine& line, SceneOptions& options);
 
 /// What the options ask of the loader, with the folders that the environment names.
 LoadOptions load_options(const SceneOptions& options);

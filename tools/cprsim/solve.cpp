@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
@@ -34,6 +34,7 @@ struct SolveWords {
   std::vector<std::string> drives, poses, free, wrenches, measured, channels;
   std::string unknown_wrench;
   std::optional<double> at;
+  bool as_it_is = false;
 };
 
 struct Solved {
@@ -46,9 +47,11 @@ struct Solved {
 };
 
 std::optional<int> read_words(SolveWords& w, const Words& words) {
-  CLI::App app(
-      "Finds the robot's equilibrium and says whether it is stable. With a pose, finds the drives "
-      "that lead there;\nwith measured channels and an unknown wrench, the wrench that explains "
+  CommandLine line(
+      "cprsim solve",
+      "Finds the robot's equilibrium and says whether it is stable. With a pose, here or as a "
+      "<cprsim:target> of\nthe scene, finds the drives that lead there; with measured channels and "
+      "an unknown wrench, the wrench that explains "
       "them.\n\n"
       "Examples\n"
       "  cprsim solve scene.xml\n"
@@ -56,39 +59,58 @@ std::optional<int> read_words(SolveWords& w, const Words& words) {
       "  cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0\n"
       "  cprsim solve scene.xml --pose 'robot::platform=0.02,0,0.39,*,*,0' --free "
       "robot::leg_1,...\n"
-      "  cprsim solve scene.xml --unknown-wrench robot::platform --measured CHANNEL=VALUE ...",
-      "cprsim solve");
-  app.add_option("SCENE", w.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  const auto many = [&](const char* name, std::vector<std::string>& list, const char* help,
-                        const char* type) {
-    app.add_option(name, list, help)->type_name(type)->allow_extra_args(false);
-  };
-  many("--drive", w.drives, "Sets a drive: m, rad, N, N m; angles may end in deg", "NAME=VALUE");
-  many("--pose", w.poses, "Prescribes a link's or frame's pose; * leaves a freedom open",
-       "NAME=X,Y,Z[,R,P,Y]");
-  app.add_option("--free", w.free, "Drives that --pose may change (default all)")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->allow_extra_args(false);
-  many("--wrench", w.wrenches, "Force (and torque) at a link's or frame's origin, world axes",
-       "NAME=FX,FY,FZ[,TX,TY,TZ]");
-  app.add_option("--unknown-wrench", w.unknown_wrench, "Estimates the wrench on this link or frame")
-      ->type_name("NAME");
-  many("--measured", w.measured, "What a channel reads, for --unknown-wrench", "CHANNEL=VALUE");
-  many("--channel", w.channels, "Also prints these channels (with * globs)", "PATTERN");
-  add_number(app, "--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
-             [](double t) { return t >= 0; });
-  add_scene_options(app, w.scene);
-  add_console_options(app, w.console);
-  return parse(app, words);
+      "  cprsim solve scene.xml --unknown-wrench robot::platform --measured CHANNEL=VALUE ...");
+  line.scene(w.path);
+  line.texts("--drive", w.drives, "NAME=VALUE",
+             "Sets a drive: m, rad, N, N m; angles may end in deg");
+  line.texts("--pose", w.poses, "NAME=X,Y,Z[,R,P,Y]",
+             "Prescribes a link's or frame's pose; * leaves a freedom open");
+  line.list("--free", w.free, "NAMES", "Drives that --pose may change (default all)");
+  line.flag("--as-it-is", w.as_it_is, "Forward, even if the scene has a <cprsim:target>");
+  line.exclude("--as-it-is", "--pose");
+  line.texts("--wrench", w.wrenches, "NAME=FX,FY,FZ[,TX,TY,TZ]",
+             "Force (and torque) at a link's or frame's origin, world axes");
+  line.text("--unknown-wrench", w.unknown_wrench, "NAME",
+            "Estimates the wrench on this link or frame");
+  line.texts("--measured", w.measured, "CHANNEL=VALUE",
+             "What a channel reads, for --unknown-wrench");
+  line.texts("--channel", w.channels, "PATTERN", "Also prints these channels (with * globs)");
+  line.number("--at", w.at, "Time at which drives and loads are read (default 0)", "of seconds",
+              [](double t) { return t >= 0; });
+  add_scene_options(line, w.scene);
+  add_console_options(line, w.console);
+  return line.parse(words);
 }
 
-Goal goal_of(const SolveWords& w, const StaticStudy& study) {
-  std::vector<Goal> goals;
+/// Poses on the command line; without them those of the scene.
+std::vector<PoseGoal> pose_goals(const SolveWords& w, const Scene& scene) {
+  std::vector<PoseGoal> goals;
   for (const std::string& text : w.poses)
-    goals.push_back(reach(pose_goal(study.scene(), text), study.robot().scale.length));
+    goals.push_back(pose_goal(scene, text));
+  if (goals.empty() && !w.as_it_is)
+    for (const TargetSpec& target : scene.targets)
+      goals.push_back(pose_goal(target));
+  return goals;
+}
+
+/// Drives that may change so that poses are reached.
+std::vector<Parameter> yielding_drives(const SolveWords& w, const StaticStudy& study) {
+  if (!w.poses.empty() || !w.free.empty()) return drives_or_all(study, w.free);
+  std::vector<Parameter> drives;
+  for (const Parameter& drive : study.drives()) {
+    const auto asks_for = [&](const TargetSpec& target) {
+      return std::count(target.drives.begin(), target.drives.end(), drive.index) > 0;
+    };
+    const auto& targets = study.scene().targets;
+    if (std::any_of(targets.begin(), targets.end(), asks_for)) drives.push_back(drive);
+  }
+  return drives;
+}
+
+Goal goal_of(const SolveWords& w, const std::vector<PoseGoal>& poses, const StaticStudy& study) {
+  std::vector<Goal> goals;
+  for (const PoseGoal& pose : poses)
+    goals.push_back(reach(pose, study.robot().scale.length));
   std::vector<ChannelGoal> measured;
   for (const std::string& text : w.measured) {
     ChannelGoal goal = measured_channel(study.scene(), text);
@@ -108,15 +130,16 @@ Solved solve(StaticStudy& study, const SolveWords& w, const std::vector<Paramete
     const auto [name, value] = split_assignment("--drive", text);
     study.set(study.drives()[drive_named(study, name)], number_of("--drive", value));
   }
-  const Goal goal = goal_of(w, study);
+  const std::vector<PoseGoal> poses = pose_goals(w, study.scene());
+  const Goal goal = goal_of(w, poses, study);
   std::vector<Parameter> parameters = wrench;
-  if (!w.poses.empty())
-    for (const Parameter& drive : drives_or_all(study, w.free))
+  if (!poses.empty())
+    for (const Parameter& drive : yielding_drives(w, study))
       parameters.push_back(drive);
   Solved solved;
   solved.report = study.solve();
   if (!solved.report.converged()) return solved;
-  solved.inverse = !w.poses.empty() || !w.measured.empty();
+  solved.inverse = !poses.empty() || !w.measured.empty();
   if (solved.inverse) solved.inverse_report = solve_inverse(study, parameters, goal);
   solved.stability = judge(study);
   return solved;

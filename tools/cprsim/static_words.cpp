@@ -78,6 +78,10 @@ PoseGoal pose_goal(const Scene& scene, const std::string& text) {
   return goal;
 }
 
+PoseGoal pose_goal(const TargetSpec& target) {
+  return {target.at, target.X_WT.p, angles_of(target.X_WT.R), target.asked};
+}
+
 ProbeWrench wrench_of(const Scene& scene, const std::string& text) {
   const auto [name, values] = split_assignment("--wrench", text);
   ProbeWrench wrench;

@@ -30,6 +30,9 @@ FrameRef frame_named(const Scene& scene, const std::string& option, const std::s
 /// entries leave the rotation open.
 PoseGoal pose_goal(const Scene& scene, const std::string& text);
 
+/// What a <cprsim:target> of the scene asks.
+PoseGoal pose_goal(const TargetSpec& target);
+
 /// "robot::platform=0,0,-1" or with three torques more.
 ProbeWrench wrench_of(const Scene& scene, const std::string& text);
 

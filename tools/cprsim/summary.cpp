@@ -2,9 +2,9 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "tools/cprsim/names.h"
 #include "tools/cprsim/run_report.h"
 
 namespace cprsim {
@@ -36,19 +36,9 @@ std::string effects_line(const Scene& scene) {
   return line + "\n";
 }
 
-/// "50 points", or the range if the rods differ.
-std::string cells_of(const ProblemFacts& facts) {
-  if (facts.rods.empty()) return "no rods";
-  const auto [least, most] =
-      std::minmax_element(facts.rods.begin(), facts.rods.end(),
-                          [](const RodFacts& a, const RodFacts& b) { return a.cells < b.cells; });
-  if (least->cells == most->cells) return fmt::format("{} points", least->cells);
-  return fmt::format("{} to {} points", least->cells, most->cells);
-}
-
 std::string solver_line(const Scene& scene, const RunReport& report) {
   const RunStatistics& statistics = report.statistics;
-  std::string line = fmt::format("  solver     shooting, {}", cells_of(report.facts));
+  std::string line = "  solver     " + pieces_text(report.facts);
   if (scene.simulation.mode != Mode::kStatic && statistics.steps > 0) {
     const double mean =
         static_cast<double>(statistics.iterations) / static_cast<double>(statistics.steps);

@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 
@@ -27,12 +26,12 @@ constexpr const char* kAbout =
     "Freedoms of the frame that are not varied are held where the scene's equilibrium has them if\n"
     "there are six drives or more, else they are left free; --hold says otherwise.";
 
-double number(const std::string& option, const std::string& text) {
+double number(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) {
-    throw CLI::ValidationError(option, "'" + text + "' is not a number");
+    throw UsageError("'" + text + "' is not a number");
   }
   return value;
 }
@@ -52,84 +51,71 @@ VaryOption vary_of(const std::string& text) {
   VaryOption vary;
   const std::size_t equals = text.find('=');
   vary.name = text.substr(0, equals);
-  if (vary.name.empty()) throw CLI::ValidationError("--vary", "'" + text + "' names nothing");
+  if (vary.name.empty()) throw UsageError("'" + text + "' names nothing");
   if (equals == std::string::npos) return vary;
   const std::vector<std::string> parts = split(text.substr(equals + 1), ':');
   if (parts.size() < 2 || parts.size() > 3) {
-    throw CLI::ValidationError("--vary", "'" + text + "' is not of the form NAME=LOW:HIGH[:COUNT]");
+    throw UsageError("'" + text + "' is not of the form NAME=LOW:HIGH[:COUNT]");
   }
-  vary.low = number("--vary", parts[0]);
-  vary.high = number("--vary", parts[1]);
+  vary.low = number(parts[0]);
+  vary.high = number(parts[1]);
   if (*vary.low > *vary.high) {
-    throw CLI::ValidationError("--vary", "'" + text + "' ends below where it begins");
+    throw UsageError("'" + text + "' ends below where it begins");
   }
   if (parts.size() == 3) {
     const auto count = whole_number(parts[2]);
     if (!count || *count < 1 || *count > 10000000) {
-      throw CLI::ValidationError("--vary", "'" + parts[2] + "' is not a number of values");
+      throw UsageError("'" + parts[2] + "' is not a number of values");
     }
     vary.count = static_cast<int>(*count);
   }
   return vary;
 }
 
-NumberOption number_of(const std::string& option, const std::string& text, bool name_first) {
+NumberOption number_of(const std::string& text, bool name_first) {
   const std::size_t equals = text.find('=');
   NumberOption result;
   if (equals != std::string::npos) {
     result.name = text.substr(0, equals);
-    result.value = number(option, text.substr(equals + 1));
+    result.value = number(text.substr(equals + 1));
   } else if (name_first) {
     result.name = text;
   } else {
-    result.value = number(option, text);
+    result.value = number(text);
   }
   return result;
 }
 
-void add_texts(CLI::App& app, const std::string& name, const std::string& type,
-               const std::string& help, const std::function<void(const std::string&)>& take) {
-  app.add_option_function<std::vector<std::string>>(
-         name,
-         [take](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts)
-             take(text);
-         },
-         help)
-      ->type_name(type)
-      ->allow_extra_args(false);
-}
-
-void add_own_options(CLI::App& app, WorkspaceOptions& options) {
-  add_texts(app, "--vary", "NAME[=LOW:HIGH[:COUNT]]",
+void add_own_options(CommandLine& line, WorkspaceOptions& options) {
+  line.each("--vary", "NAME[=LOW:HIGH[:COUNT]]",
             "A drive, or with --pose one of x y z roll pitch yaw; repeatable",
             [&options](const std::string& text) { options.vary.push_back(vary_of(text)); });
-  add_count(app, "--random", options.random, 1, "So many random points instead of a grid");
-  app.add_option("--pose", options.pose, "Find drives that bring this frame to poses")
-      ->type_name("FRAME");
-  add_texts(app, "--hold", "FREEDOM[=VALUE]", "With --pose: held, not free; 'none': all free",
+  line.count("--random", options.random, 1, "So many random points instead of a grid");
+  line.text("--pose", options.pose, "FRAME", "Find drives that bring this frame to poses");
+  line.each("--hold", "FREEDOM[=VALUE]", "With --pose: held, not free; 'none': all free",
             [&options](const std::string& text) {
               for (const std::string& part : split(text, ','))
-                options.hold.push_back(number_of("--hold", part, true));
+                options.hold.push_back(number_of(part, true));
             });
-  add_texts(app, "--drive", "ROD", "The length of an undriven rod is a drive, too",
+  line.each("--drive", "ROD", "The length of an undriven rod is a drive, too",
             [&options](const std::string& text) { options.drives.push_back(text); });
-  add_texts(app, "--max-effort", "[DRIVE=]NUMBER", "Flag points that need more, N or N m",
+  line.each("--max-effort", "[DRIVE=]NUMBER", "Flag points that need more, N or N m",
             [&options](const std::string& text) {
-              options.max_effort.push_back(number_of("--max-effort", text, false));
+              options.max_effort.push_back(number_of(text, false));
               if (*options.max_effort.back().value < 0) {
-                throw CLI::ValidationError("--max-effort", "'" + text + "' is below 0");
+                throw UsageError("'" + text + "' is below 0");
               }
             });
-  app.add_option("--frame", options.frame, "Whose pose is told (default: what most rods hold)")
-      ->type_name("FRAME");
-  app.add_option("--view", options.view, "Plane of the picture: xy, xz or yz (default: the widest)")
-      ->type_name("PLANE")
-      ->check(CLI::IsMember({"xy", "xz", "yz"}));
-  app.add_option("-o,--output", options.output, "Folder (default out/<scene>_workspace)")
-      ->type_name("DIR");
-  app.add_flag("--resume", options.resume, "Go on where an interrupted one stopped");
-  add_count(app, "-j,--jobs", options.jobs, 1, "Threads (default: all cores)");
+  line.text("--frame", options.frame, "FRAME", "Whose pose is told (default: what most rods hold)");
+  line.one("--view", "PLANE", "Plane of the picture: xy, xz or yz (default: the widest)",
+           [&options](const std::string& text) {
+             if (text != "xy" && text != "xz" && text != "yz")
+               throw UsageError("'" + text + "' is none of xy, xz, yz");
+             options.view = text;
+           });
+  line.text("-o,--output", options.output, "DIR", "Folder (default out/<scene>_workspace)");
+  line.flag("--resume", options.resume, "Go on where an interrupted one stopped");
+  line.count("-j,--jobs", options.jobs, 1, "Threads (default: all cores)");
 }
 
 std::string range_text(const VaryOption& vary) {
@@ -165,14 +151,12 @@ std::vector<std::pair<std::string, std::string>> WorkspaceOptions::given() const
 
 std::variant<WorkspaceOptions, int> parse_workspace_options(const Words& words) {
   WorkspaceOptions options;
-  CLI::App app(kAbout, "cprsim workspace");
-  app.add_option("SCENE", options.path, "The scene file; - reads standard input")
-      ->required()
-      ->type_name("");
-  add_own_options(app, options);
-  add_scene_options(app, options.scene);
-  add_console_options(app, options.console);
-  if (const auto code = parse(app, words)) return *code;
+  CommandLine line("cprsim workspace", kAbout);
+  line.scene(options.path);
+  add_own_options(line, options);
+  add_scene_options(line, options.scene);
+  add_console_options(line, options.console);
+  if (const auto code = line.parse(words)) return *code;
   return options;
 }
 

@@ -58,9 +58,13 @@ void OutputFile::flush() {
   buffer_.clear();
 }
 
-void OutputFile::commit() {
+void OutputFile::sync() {
   flush();
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail("write", part_);
+}
+
+void OutputFile::commit() {
+  sync();
   close_descriptor();
   if (::rename(part_.c_str(), path_.c_str()) != 0) fail("rename to its final name", part_);
   sync_folder(path_.parent_path());
@@ -77,8 +81,25 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
   file.commit();
 }
 
+void claim_standard_streams() {
+  // open() gives the lowest free number: the streams are filled in order
+  int descriptor = ::open("/dev/null", O_RDONLY);
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO)
+    descriptor = ::open("/dev/null", O_RDONLY);
+  if (descriptor >= 0) ::close(descriptor);
+}
+
 void write_to_stdout(std::string_view text) {
   write_all(STDOUT_FILENO, text, "standard output");
+}
+
+void write_to_stderr(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
 }
 
 }  // namespace cprsim

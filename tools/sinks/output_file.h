@@ -27,6 +27,8 @@ class OutputFile {
   /// Buffers; a full block goes to disk.
   void write(std::string_view text);
   void flush();
+  /// Flushes; what was written is then on the disk.
+  void sync();
   /// Flushes, syncs and gives the file its name.
   void commit();
 
@@ -43,7 +45,14 @@ class OutputFile {
 /// The whole of a small file at once.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
+/// A standard stream that the caller has closed is taken by /dev/null, unwritable: no file of ours
+/// may get its number and then a message in its middle.
+void claim_standard_streams();
+
 /// Results go here. @throws OutputError when nobody reads them any more.
 void write_to_stdout(std::string_view text);
+
+/// Everything else goes here. That nobody reads it, or that its disk is full, stops no run.
+void write_to_stderr(std::string_view text) noexcept;
 
 }  // namespace cprsim

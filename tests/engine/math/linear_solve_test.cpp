@@ -47,6 +47,22 @@ TEST(LinearSolve, LeastNormSolutionIsOrthogonalToTheKernel) {
   EXPECT_LT((kernel.transpose() * x).norm(), 1e-10);
 }
 
+TEST(LinearSolve, GeneralSolutionIsAllThereIs) {
+  const MatX A = numbers(5, 9), B = numbers(5, 3);
+  MatX X;
+  ASSERT_TRUE(general_solution(A, B, X));
+  ASSERT_EQ(X.rows(), 9);
+  ASSERT_EQ(X.cols(), 4 + 3);
+  EXPECT_LT((A * X.leftCols(4)).norm(), 1e-13);
+  EXPECT_LT((A * X.rightCols(3) + B).norm(), 1e-13);
+  EXPECT_GT(conditioning(X.leftCols(4)), 1e-2);  // four directions, not fewer
+  MatX incomplete = A;
+  incomplete.row(4).setZero();
+  EXPECT_FALSE(general_solution(incomplete, MatX::Zero(5, 0), X));
+  incomplete(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(general_solution(incomplete, MatX::Zero(5, 0), X));
+}
+
 TEST(LinearSolve, SymmetricSystemIsMet) {
   const MatX B = numbers(7, 7);
   const MatX N = B.transpose() * B + MatX::Identity(7, 7);

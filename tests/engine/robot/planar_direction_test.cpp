@@ -6,6 +6,7 @@
 #include "engine/math/so3.h"
 #include "tests/engine/robot/direction_error.h"
 #include "tests/engine/robot/sample_scenes.h"
+#include "tests/support/methods.h"
 #include "tests/support/planar_robots.h"
 
 namespace cprsim {
@@ -81,9 +82,18 @@ double slope_error(const Scene& scene, const Setting& setting, unsigned seed) {
 // fourth-order differences reach 1e-9 and better; round-off of stiff inertia is most of that
 constexpr double kTolerance = 1e-7;
 
-void expect_exact(const Scene& scene, const Setting& setting, const std::string& what) {
-  for (unsigned seed = 1; seed <= 3; ++seed)
-    EXPECT_LT(slope_error(scene, setting, seed), kTolerance) << what << ", state " << seed;
+/// Of rods discretised in every way, or in the scene's.
+void expect_exact(Scene scene, const Setting& setting, const std::string& what) {
+  std::vector<Method> methods{scene.solver.method};
+  if (scene.solver.method == Method::kAuto)
+    methods.assign(std::begin(kEveryMethod), std::end(kEveryMethod));
+  scene.solver.order = 3;
+  for (Method method : methods)
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      scene.solver.method = method;
+      EXPECT_LT(slope_error(scene, setting, seed), kTolerance)
+          << what << ", state " << seed << ", " << name_of(method);
+    }
 }
 
 /// Ground - rod - body - rod - body - rod - ground, numbers near 1, ends of the middle rod as told.

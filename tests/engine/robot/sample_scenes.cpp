@@ -152,8 +152,8 @@ void disturb(Robot& robot, Equations& equations, Numbers& numbers, double size) 
   bend << 8, 5, -3, 0, 0, 0;
   for (RodModel::Unknowns& rod : u.rods) {
     // bent besides: a straight rod that cannot stretch has no Newton direction
-    for (Eigen::Index i = 0; i < rod.values.size(); i += 6)
-      rod.values.segment<6>(i) += size * (numbers.vec6() + bend);
+    for (Eigen::Index i = 0; i < rod.values.size(); ++i)
+      rod.values[i] += size * (numbers.next() + bend[i % 6]);
     for (NodeState& start : rod.starts) {
       const Mat3 R = exp_so3(size * numbers.vec3()) * Mat3(rotation_of(start));
       Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(start.R) = R;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/cprsim/measured_table.h"
+#include "tools/series/measured_table.h"
 
 #include <fmt/core.h>
 

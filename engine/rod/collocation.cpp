@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Setting up, coefficients of a solve, and the residual.
+#include "engine/rod/collocation.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "engine/math/so3.h"
+#include "engine/rod/arc_grid.h"
+#include "engine/rod/shooting.h"
+
+namespace cprsim {
+namespace {
+
+/// Where a rod is observed and its field given, at least so many and a knot: enough for drawings
+/// and modes, whose cost grows with the third power of the number.
+constexpr int kLeastNodes = 8;
+
+}  // namespace
+
+CollocationRod::CollocationRod(std::string name, const RodEnd& base, const RodEnd& tip,
+                               const SectionProperties& section, double length,
+                               const CollocationOptions& options)
+    : name_(std::move(name)), base_(base), tip_(tip), section_(section), options_(options) {
+  assert(options.degree >= kLeastDegree && options.degree <= kMaxDegree);
+  extensible_ = options.extension || options.shear;
+  place_sites(arc_grid(options.elements, options.stations));
+  const auto n = static_cast<Eigen::Index>(points_.size());
+  const Eigen::Index strains = options.damping ? n * (extensible_ ? 2 : 1) : 0;
+  track_.resize(position_coordinates() + 3 * strains);
+  if (options_.rotary_inertia) rotation_track_.resize(3 * n);
+  reference_rotations_.assign(points_.size(), Mat3::Identity());
+  forcing_.length = length;
+  set_unloaded(Pose{});
+}
+
+// Pieces from load to load, their points, and where they are observed.
+void CollocationRod::place_sites(const std::vector<double>& grid) {
+  elements_ = static_cast<int>(grid.size()) - 1;
+  const std::vector<std::size_t> load_nodes = nodes_at(grid, options_.stations);
+  std::vector<std::size_t> ends{0, grid.size() - 1};
+  ends.insert(ends.end(), load_nodes.begin(), load_nodes.end());
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (std::size_t node : load_nodes)
+    station_of_.push_back(
+        static_cast<std::size_t>(std::find(ends.begin(), ends.end(), node) - ends.begin()));
+  int controls = 0;
+  const int parts = (kLeastNodes + elements_ - 1) / elements_;
+  for (std::size_t g = 0; g + 1 < ends.size(); ++g) {
+    const std::vector<double> breaks(grid.begin() + static_cast<std::ptrdiff_t>(ends[g]),
+                                     grid.begin() + static_cast<std::ptrdiff_t>(ends[g + 1]) + 1);
+    pieces_.push_back(
+        {BsplineSpace(options_.degree, breaks), controls, static_cast<int>(sites_.size()), 0});
+    const BsplineSpace derivatives = pieces_[g].space.derivatives();
+    const VecX weights = derivatives.greville_weights();
+    for (double s : derivatives.greville())
+      sites_.push_back(site(g, s));
+    weights_.insert(weights_.end(), weights.begin(), weights.end());
+    pieces_[g].points = static_cast<int>(weights.size());
+    controls += pieces_[g].space.size();
+    // a node at a load belongs to what lies beyond it
+    for (std::size_t e = 0; e + 1 < breaks.size(); ++e)
+      for (int k = 0; k < parts; ++k)
+        nodes_.push_back(site(g, breaks[e] + (breaks[e + 1] - breaks[e]) * k / parts));
+  }
+  nodes_.push_back(site(pieces_.size() - 1, 1));
+  control_.assign(static_cast<std::size_t>(controls), Vec13::Zero());
+  points_.assign(sites_.size(), CollocationPoint{});
+  find_band();
+}
+
+CollocationRod::Site CollocationRod::site(std::size_t piece, double s) const {
+  Site at{s, pieces_[piece].space.basis(s)};
+  at.basis.first += pieces_[piece].first_control;
+  return at;
+}
+
+Vec13 CollocationRod::value(const Site& at) const {
+  Vec13 y = Vec13::Zero();
+  for (int j = 0; j <= options_.degree; ++j)
+    y += at.basis.value[j] * control_[static_cast<std::size_t>(at.basis.first + j)];
+  return y;
+}
+
+/// By arc length.
+Vec13 CollocationRod::derivative(const Site& at) const {
+  Vec13 y_s = Vec13::Zero();
+  for (int j = 0; j <= options_.degree; ++j)
+    y_s += at.basis.slope[j] * control_[static_cast<std::size_t>(at.basis.first + j)];
+  return y_s / forcing_.length;
+}
+
+NodeState CollocationRod::state_of(const Vec13& y) const {
+  NodeState state{};
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(state.R) =
+      rotation_of(Vec4(y.head<4>()));
+  Eigen::Map<Vec3>(state.p) = y.segment<3>(kP);
+  Eigen::Map<Vec3>(state.n) = y.segment<3>(kN);
+  Eigen::Map<Vec3>(state.m) = y.segment<3>(kM);
+  return state;
+}
+
+/// Force and moment of all loads at a station; n, m fall by them.
+Vec6 CollocationRod::load_at(std::size_t station, const Mat3& R) const {
+  Vec6 sum = Vec6::Zero();
+  for (std::size_t i = 0; i < station_of_.size(); ++i) {
+    if (station_of_[i] != station) continue;
+    const PointLoad& load = forcing_.loads[i];
+    sum.head<3>() += load.follower ? Vec3(R * load.force) : load.force;
+    sum.tail<3>() += load.follower ? Vec3(R * load.torque) : load.torque;
+  }
+  return sum;
+}
+
+/// Its derivative by the section's turn, in the left three columns: d(R F) = phi × R F.
+Mat6 CollocationRod::load_by_turn(std::size_t station, const Mat3& R) const {
+  Mat6 by_turn = Mat6::Zero();
+  for (std::size_t i = 0; i < station_of_.size(); ++i) {
+    const PointLoad& load = forcing_.loads[i];
+    if (station_of_[i] != station || !load.follower) continue;
+    by_turn.block<3, 3>(0, 0) -= hat(R * load.force);
+    by_turn.block<3, 3>(3, 0) -= hat(R * load.torque);
+  }
+  return by_turn;
+}
+
+/// Before a load at the base.
+NodeState CollocationRod::base_state() const {
+  NodeState state = state_of(control_.front());
+  const Vec6 load = load_at(0, Mat3(rotation_of(state)));
+  Eigen::Map<Vec3>(state.n) += load.head<3>();
+  Eigen::Map<Vec3>(state.m) += load.tail<3>();
+  return state;
+}
+
+/// Beyond a load at the tip.
+NodeState CollocationRod::tip_state() const {
+  NodeState state = state_of(control_.back());
+  const Vec6 load = load_at(pieces_.size(), Mat3(rotation_of(state)));
+  Eigen::Map<Vec3>(state.n) -= load.head<3>();
+  Eigen::Map<Vec3>(state.m) -= load.tail<3>();
+  return state;
+}
+
+Vec3 CollocationRod::compliance_bt() const {
+  Vec3 K = section_.K_bt;
+  if (options_.damping) K += rates_.c_v * section_.B_bt;
+  return K.cwiseInverse();
+}
+
+// Rigid modes are zeros: shear and extension each only if the scene lists them.
+Vec3 CollocationRod::compliance_se() const {
+  Vec3 C = Vec3::Zero();
+  const Vec3 B = options_.damping ? section_.B_se : Vec3(Vec3::Zero());
+  if (options_.shear)
+    C.head<2>() = (section_.K_se.head<2>() + rates_.c_v * B.head<2>()).cwiseInverse();
+  if (options_.extension) C.z() = 1 / (section_.K_se.z() + rates_.c_v * B.z());
+  C.z() += forcing_.axial_softness * forcing_.length * forcing_.length /
+           section_.K_bt.head<2>().maxCoeff();
+  return C;
+}
+
+void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing) {
+  rates_ = rates;
+  forcing_ = forcing;
+  assert(forcing_.loads.size() == station_of_.size());
+  model_.C_bt = compliance_bt();
+  model_.C_se = compliance_se();
+  model_.k = section_.rhoA * rates.c_v * rates.c_w + forcing_.relaxation;
+  model_.rotary = options_.rotary_inertia && rates.dynamic();
+  Eigen::Map<Vec3>(model_.rhoJ) = section_.rhoJ;
+  model_.c_v = rates.c_v;
+  model_.c_w = rates.c_w;
+  model_.body_rates = rates.body_rates;
+  choose_units();
+  update_point_inputs();
+}
+
+void CollocationRod::choose_units() {
+  const double L = forcing_.length, EI = section_.K_bt.head<2>().maxCoeff();
+  scale_ = {L, EI / (L * L), EI / L};
+  // positions carry round-off eps L; inertia turns it into forces eps k L²
+  constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
+  noise_ = std::max(1.0, kRoundOff * model_.k * std::pow(L, 4) / (EI * forcing_.tolerance));
+  double N = 0;
+  for (const CollocationPoint& point : points_)
+    N = std::max(N, point.n().norm());
+  Vec3 K_se = Vec3::Zero();
+  for (int i = 0; i < 3; ++i)
+    if (model_.C_se[i] > 0) K_se[i] = 1 / model_.C_se[i];
+  growth_ = cprsim::growth_exponent(section_, model_.C_bt.cwiseInverse(), K_se, L, model_.k, N);
+  const double layer = L / std::max(1.0, growth_);
+  unit_ = {layer, EI / (layer * layer), EI / layer};
+}
+
+// m = K (u - u_rest) + B u_t with u_t = c_v u + x_h: u = C (K u_rest - B x_h) + C m; likewise v.
+void CollocationRod::update_point_inputs() {
+  const Vec3 K_rest = section_.K_bt.cwiseProduct(section_.u_rest), z = Vec3::UnitZ();
+  const auto n = static_cast<Eigen::Index>(points_.size());
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    CollocationPoint& point = points_[j];
+    const auto i = 3 * static_cast<Eigen::Index>(j), strain = strain_track() + i;
+    point.b = -section_.rhoA * forcing_.gravity;
+    point.u0 = model_.C_bt.cwiseProduct(K_rest);
+    point.v0 = z;
+    if (forcing_.relaxation > 0) point.b -= forcing_.relaxation * marked_[j];
+    if (!rates_.dynamic()) continue;
+    point.b += section_.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
+    if (options_.damping) {
+      point.u0 -=
+          model_.C_bt.cwiseProduct(section_.B_bt.cwiseProduct(track_.x_h.segment<3>(strain)));
+      if (extensible_)
+        point.v0 -= model_.C_se.cwiseProduct(
+            section_.B_se.cwiseProduct(rates_.c_v * z + track_.x_h.segment<3>(strain + 3 * n)));
+    }
+    if (!model_.rotary) continue;
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(point.spin.R_start) =
+        reference_rotations_[j];
+    Eigen::Map<Vec3>(point.spin.theta_h) = rotation_track_.x_h.segment<3>(i);
+    Eigen::Map<Vec3>(point.spin.omega_h) = rotation_track_.v_h.segment<3>(i);
+  }
+}
+
+/// Before the piece: what it starts with minus what the one before ends with, its load passed.
+Vec13 CollocationRod::join_rows(std::size_t piece) const {
+  const auto at = static_cast<std::size_t>(pieces_[piece].first_control);
+  Vec13 r = control_[at] - control_[at - 1];
+  r.tail<6>() += load_at(piece, rotation_of(Vec4(control_[at - 1].head<4>())));
+  return r;
+}
+
+/// What makes rows dimensionless: those of a point are integrals over its share of the length,
+/// those of a join differences of fields.
+Vec13 CollocationRod::point_scale(std::size_t point) const {
+  const double share = weights_[point], L = scale_.length;
+  Vec13 d;
+  d << share * L, Vec3::Constant(share * L / noise_), Vec3::Constant(share / noise_),
+      Vec3::Constant(share * L / (scale_.force * noise_)),
+      Vec3::Constant(share * L / (scale_.moment * noise_));
+  return d;
+}
+
+Vec13 CollocationRod::join_scale() const {
+  Vec13 d;
+  d << Vec4::Ones(), Vec3::Constant(1 / scale_.length), Vec3::Constant(1 / (scale_.force * noise_)),
+      Vec3::Constant(1 / (scale_.moment * noise_));
+  return d;
+}
+
+RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
+  RodScale loose = scale_;
+  loose.force *= noise_;
+  loose.moment *= noise_;
+  RodResidual r;
+  int row = 0;
+  const auto add = [&](const auto& values) {
+    for (const double value : values) {
+      const double size =
+          std::isfinite(value) ? std::abs(value) : std::numeric_limits<double>::infinity();
+      r.sum_squares += value * value;
+      r.finite = r.finite && std::isfinite(value);
+      if (size > r.largest) {
+        r.largest = size;
+        r.worst_row = row;
+      }
+      ++row;
+    }
+  };
+  add(Vec6(base_.value(base_state(), base, loose) - base_gap_));
+  add(Eigen::Matrix<double, 1, 1>(control_.front().head<4>().squaredNorm() - 1));
+  residual_.clear();
+  for (std::size_t g = 0; g < pieces_.size(); ++g) {
+    if (g > 0) {
+      residual_.push_back(join_rows(g));
+      add(Vec13(join_scale().cwiseProduct(residual_.back())));
+    }
+    for (int i = 0; i < pieces_[g].points; ++i) {
+      const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
+      points_[j].y = value(sites_[j]);
+      points_[j].y_s = derivative(sites_[j]);
+      residual_.push_back(evaluate_point(model_, points_[j]));
+      add(Vec13(point_scale(j).cwiseProduct(residual_.back())));
+    }
+  }
+  add(Vec6(tip_.value(tip_state(), tip, loose) - tip_gap_));
+  section_evaluations_ += static_cast<long>(points_.size());
+  return r;
+}
+
+std::string CollocationRod::row_name(int row) const {
+  if (row < 6) return "base of " + name_ + ", " + base_.row_name(row);
+  if (row == 6) return "unit quaternion at the base of " + name_;
+  row -= 7;
+  for (std::size_t g = 0; g < pieces_.size(); ++g) {
+    if (g > 0) {
+      if (row < 13) return "join " + std::to_string(g) + " between pieces of " + name_;
+      row -= 13;
+    }
+    if (row < 13 * pieces_[g].points) {
+      static const char* const kRows[] = {"unit quaternion", "curvature law", "stretch law",
+                                          "force balance", "moment balance"};
+      const auto j = static_cast<std::size_t>(pieces_[g].first_point + row / 13);
+      return std::string(kRows[(row % 13 + 2) / 3]) + " of " + name_ +
+             " at s = " + std::to_string(sites_[j].s);
+    }
+    row -= 13 * pieces_[g].points;
+  }
+  return "tip of " + name_ + ", " + tip_.row_name(row);
+}
+
+}  // namespace cprsim

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Isogeometric collocation of a rod: its fields q, p, n, m are B-splines (engine/math/bspline.h),
+// the balance (engine/rod/collocation_point.h) holds in strong form at points.
+//
+// A spline of degree p with N control points has a derivative of degree p - 1 with N - 1 of them;
+// that many points, the Greville abscissae of the derivative's space, the two ends among them,
+// carry the 13 rows each. They say what every derivative is, and 13 rows at the ends the rest: so
+// each field is as many times differentiated as it has rows, whatever the compliances, and an
+// inextensible rod is no special case. (With the two laws at N points and the two balances at
+// N - 2, as published, a zero of C_se leaves axial force open and position twice determined.) The
+// order is p for even p, p + 1 for odd p: interpolation by splines of even degree has an error
+// that integrates to zero.
+//
+// Where a point load acts n, m jump: a knot of multiplicity p + 1 there, with q, p joined by rows.
+// Control points are eliminated from the base to the last one (engine/math/banded_elimination.h),
+// whose six combinations that the base leaves free are the z of the two-port.
+//
+// Increments of a control point turn its quaternion and scale it: a turn of the whole rod by any
+// angle is one exact step for all rotations. A length drive feeds the rod as in
+// engine/rod/shooting.h.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/math/banded_elimination.h"
+#include "engine/math/bspline.h"
+#include "engine/rod/collocation_point.h"
+#include "engine/rod/end_wrench.h"
+#include "engine/rod/rod_model.h"
+#include "engine/section/section.h"
+
+namespace cprsim {
+
+constexpr int kLeastDegree = 2, kDefaultDegree = 7;
+
+struct CollocationOptions {
+  int degree = kDefaultDegree, elements = 4;  ///< elements: at least; all point loads are at knots
+  bool extension = false, shear = false;      ///< effects that change the law
+  bool rotary_inertia = false, damping = false;
+  std::vector<double> stations;  ///< s of point loads
+};
+
+class CollocationRod final : public RodModel {
+ public:
+  CollocationRod(std::string name, const RodEnd& base, const RodEnd& tip,
+                 const SectionProperties& section, double length,
+                 const CollocationOptions& options);
+
+  /// The unloaded shape from the base frame: a straight line, or the helix of a constant rest
+  /// curvature.
+  void set_unloaded(const Pose& X_WBase);
+
+  void prepare(const StageRates& rates, const RodForcing& forcing) override;
+  RodResidual evaluate(const Port& base, const Port& tip) override;
+  bool linearize(const Port& base, const Port& tip, CondensedRod& out) override;
+  void set_direction(const Vec6& z, const Vec6& zeta_A) override;
+  void keep() override;
+  void move(double alpha) override;
+  Vec6 wrench_on_base(const Port& base) const override;
+  Vec6 wrench_on_tip(const Port& tip) const override;
+  void capture_gap(const Port& base, const Port& tip) override;
+  void hold_gap(double fraction) override;
+  void bow(const Port& base, const Port& tip) override;
+  void mark_positions() override;
+  std::vector<Track*> tracks() override;
+  void fill_tracks() override;
+
+  Eigen::Index position_coordinates() const override {
+    return 3 * static_cast<Eigen::Index>(points_.size() + nodes_.size());
+  }
+
+  void accept_tracks() override;
+  void start_tracks() override;
+  void start_tracks_moving() override;
+  Unknowns unknowns() const override;
+  void set_unknowns(const Unknowns& u) override;
+  void predict(const std::vector<const Unknowns*>& past,
+               const std::vector<double>& weights) override;
+  void visit(Archive& archive) override;
+  RodSample observe() const override;
+  RodField field() const override;
+  RodEnergy energy() const override;
+  std::string row_name(int row) const override;
+
+  RodResolution resolution() const override {
+    return {Method::kCollocation, "B-splines", elements_, options_.degree};
+  }
+
+  int cells() const override { return elements_; }
+
+  int segments() const override { return static_cast<int>(pieces_.size()); }
+
+  int unknown_count() const override { return 13 * static_cast<int>(control_.size()); }
+
+  long section_evaluations() const override { return section_evaluations_; }
+
+  double growth_exponent() const override { return growth_; }
+
+ private:
+  /// A place where splines are evaluated; functions count through all pieces, slopes are by s.
+  struct Site {
+    double s = 0;
+    BasisValues basis;
+  };
+
+  /// Between point loads: one spline space.
+  struct Piece {
+    BsplineSpace space;
+    int first_control = 0, first_point = 0, points = 0;
+  };
+
+  void place_sites(const std::vector<double>& grid);
+  Site site(std::size_t piece, double s) const;
+  Vec13 value(const Site& at) const;
+  Vec13 derivative(const Site& at) const;
+  NodeState state_of(const Vec13& y) const;
+  NodeState base_state() const;
+  NodeState tip_state() const;
+  Vec6 load_at(std::size_t station, const Mat3& R) const;
+  Mat6 load_by_turn(std::size_t station, const Mat3& R) const;
+  void set_shape(const Pose& X_WBase, const std::function<Vec3(double)>& turn);
+  Vec3 compliance_bt() const;
+  Vec3 compliance_se() const;
+  void update_point_inputs();
+  void choose_units();
+  Vec13 join_rows(std::size_t piece) const;
+  Vec13 point_scale(std::size_t point) const;
+  Vec13 join_scale() const;
+  void assemble(const Port& base);
+  void assemble_base(const Port& base);
+  void assemble_points(std::size_t piece, int row);
+  void assemble_join(std::size_t piece, int row);
+  void put(int row, int control, const Mat13& by_fields);
+  void find_band();
+  Vec13 increment_units() const;
+  EndColumns base_columns(const NodeState& start) const;
+
+  Eigen::Index strain_track() const { return position_coordinates(); }
+
+  std::string name_;
+  RodEnd base_, tip_;
+  SectionProperties section_;
+  CollocationOptions options_;
+  bool extensible_ = false;
+  int elements_ = 0;
+
+  // the grid
+  std::vector<Piece> pieces_;
+  std::vector<Site> sites_;      ///< of the points
+  std::vector<double> weights_;  ///< of the points, as fractions of the length; their sum is 1
+  std::vector<Site> nodes_;      ///< where the rod is observed, s ascending from 0 to 1
+  std::vector<std::size_t> station_of_;  ///< of forcing_.loads[i]: 0 base, 1.. joins, last the tip
+
+  // coefficients of the current solve
+  PointModel model_;
+  StageRates rates_;
+  RodForcing forcing_;
+  RodScale scale_;    ///< L, EI/L², EI/L
+  RodScale unit_;     ///< the same with the boundary layer's length, for pivoting
+  double noise_ = 1;  ///< rows of forces grow by this where round-off exceeds the tolerance
+  double growth_ = 0;
+
+  // unknowns and what the last evaluation found
+  std::vector<Vec13> control_;
+  std::vector<CollocationPoint> points_;
+  Vec6 tip_gap_ = Vec6::Zero(), base_gap_ = Vec6::Zero();              ///< left open now
+  Vec6 tip_gap_start_ = Vec6::Zero(), base_gap_start_ = Vec6::Zero();  ///< as captured
+  std::vector<Vec3> marked_;
+
+  // linearisation, direction, remembered unknowns
+  std::vector<Vec13> residual_;  ///< of points and joins, in the order of their rows
+  BandedElimination system_;
+  int lower_ = 0, upper_ = 0;  ///< band
+  bool base_moves_ = false;
+  EndColumns last_;  ///< of the last control point, in units
+  std::vector<Vec13> direction_, kept_;
+
+  Track track_;
+  Track rotation_track_{Track::Kind::kRotation};
+  std::vector<Mat3> reference_rotations_;  ///< of the points, at the start of the step
+  long section_evaluations_ = 0;
+};
+
+}  // namespace cprsim

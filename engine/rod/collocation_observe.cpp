@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a rod of splines shows to predictors and observers.
+#include <cassert>
+#include <cmath>
+
+#include "engine/math/so3.h"
+#include "engine/rod/collocation.h"
+#include "engine/rod/tableau.h"
+
+namespace cprsim {
+
+RodModel::Unknowns CollocationRod::unknowns() const {
+  Unknowns u;
+  u.values.resize(13 * static_cast<Eigen::Index>(control_.size()));
+  for (std::size_t k = 0; k < control_.size(); ++k)
+    u.values.segment<13>(13 * static_cast<Eigen::Index>(k)) = control_[k];
+  for (const Site& node : nodes_)
+    u.nodes.push_back(state_of(value(node)));
+  return u;
+}
+
+void CollocationRod::set_unknowns(const Unknowns& u) {
+  for (std::size_t k = 0; k < control_.size(); ++k)
+    control_[k] = u.values.segment<13>(13 * static_cast<Eigen::Index>(k));
+}
+
+void CollocationRod::predict(const std::vector<const Unknowns*>& past,
+                             const std::vector<double>& weights) {
+  assert(!past.empty() && past.size() == weights.size());
+  Unknowns sum;
+  sum.values = weights[0] * past[0]->values;
+  for (std::size_t i = 1; i < past.size(); ++i)
+    sum.values += weights[i] * past[i]->values;
+  set_unknowns(sum);
+  // quaternions add up to another length
+  const double length = control_.front().head<4>().norm();
+  for (Vec13& control : control_)
+    control.head<4>() /= length;
+}
+
+void CollocationRod::visit(Archive& archive) {
+  archive(growth_);
+  archive.doubles(control_);
+  archive.doubles(points_);
+  for (Track* track : tracks())
+    track->visit(archive);
+  archive.doubles(reference_rotations_);
+}
+
+RodSample CollocationRod::observe() const {
+  RodSample sample;
+  sample.length = forcing_.length;
+  sample.radius = section_.half_width;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    CollocationPoint at;
+    at.y = value(nodes_[k]);
+    at.y_s = derivative(nodes_[k]);
+    evaluate_point({}, at);
+    NodeState state = k + 1 < nodes_.size() ? state_of(at.y) : tip_state();
+    RodPoint point;
+    point.s = nodes_[k].s;
+    point.position = position_of(state);
+    point.rotation = rotation_of(state);
+    point.force = force_of(state);
+    point.moment = moment_of(state);
+    point.velocity = track_.v.segment<3>(3 * static_cast<Eigen::Index>(points_.size() + k));
+    point.curvature = at.u;
+    point.shear_stretch = at.R.transpose() * at.y_s.segment<3>(kP);
+    point.rest_curvature = section_.u_rest;
+    sample.points.push_back(point);
+  }
+  return sample;
+}
+
+RodField CollocationRod::field() const {
+  RodField f;
+  f.table = &arc_tableau(ArcIntegrator::kGauss6);
+  std::size_t piece = 0;
+  for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
+    const double s = nodes_[k].s, h = nodes_[k + 1].s - s;
+    f.cells.push_back(h * forcing_.length);
+    while (piece + 1 < pieces_.size() && nodes_[k].basis.first >= pieces_[piece + 1].first_control)
+      ++piece;
+    for (int i = 0; i < f.table->stages; ++i) {
+      const Site at = site(piece, s + f.table->c[i] * h);
+      const Vec13 y = value(at);
+      f.points.push_back({rotation_of(Vec4(y.head<4>())), derivative(at).segment<3>(kP),
+                          y.segment<3>(kN), y.segment<3>(kM)});
+    }
+  }
+  f.base = base_state();
+  f.tip = tip_state();
+  describe_section(f, section_, options_.shear, options_.extension);
+  return f;
+}
+
+RodEnergy CollocationRod::energy() const {
+  RodEnergy e;
+  const auto n = static_cast<Eigen::Index>(points_.size());
+  Vec3 K_se = Vec3::Zero();
+  if (options_.shear) K_se.head<2>() = section_.K_se.head<2>();
+  if (options_.extension) K_se.z() = section_.K_se.z();
+  const auto elastic = [&](const Vec3& u, const Vec3& v) {
+    const Vec3 bent = u - section_.u_rest, stretch = v - Vec3::UnitZ();
+    return 0.5 *
+           (bent.dot(section_.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
+  };
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    const double weight = weights_[j] * forcing_.length;
+    const CollocationPoint& point = points_[j];
+    const auto i = 3 * static_cast<Eigen::Index>(j), strain = strain_track() + i;
+    e.kinetic += weight * 0.5 * section_.rhoA * track_.v.segment<3>(i).squaredNorm();
+    if (options_.rotary_inertia) {
+      const Vec3 omega = Eigen::Map<const Vec3>(point.spin.omega);
+      e.kinetic += weight * 0.5 * omega.dot(section_.rhoJ.cwiseProduct(omega));
+    }
+    e.elastic += weight * elastic(point.u, point.v);
+    e.gravity -= weight * section_.rhoA * forcing_.gravity.dot(point.p());
+    if (!options_.damping) continue;
+    const Vec3 u_t = track_.v.segment<3>(strain);
+    e.damping_power += weight * u_t.dot(section_.B_bt.cwiseProduct(u_t));
+    if (!extensible_) continue;
+    const Vec3 v_t = track_.v.segment<3>(strain + 3 * n);
+    e.damping_power += weight * v_t.dot(section_.B_se.cwiseProduct(v_t));
+  }
+  // per unit feed: the base section's traction works on the inflow, which brings strain energy and
+  // weight along; the first point is the base
+  const CollocationPoint& base = points_.front();
+  e.feed_power = elastic(base.u, base.v) - (base.R.transpose() * base.n()).dot(base.v) -
+                 (base.R.transpose() * base.m()).dot(base.u) -
+                 section_.rhoA * forcing_.gravity.dot(base.p());
+  return e;
+}
+
+}  // namespace cprsim

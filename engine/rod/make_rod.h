@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a rod of the scene to a discretised one: the only place that knows all methods. A new method
+// adds its files and a case in make_rod.cpp.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/model/rod_spec.h"
+#include "engine/model/solver_spec.h"
+#include "engine/rod/rod_model.h"
+#include "engine/section/section.h"
+
+namespace cprsim {
+
+/// Everything that any discretisation is made from.
+struct RodPlan {
+  const RodSpec* spec = nullptr;
+  Pose X_WBase, X_WTip;       ///< joint frames; of the tip only if it is held
+  std::optional<Mat3> plane;  ///< of a planar scene: e1, e2 and the normal as columns, world
+  SectionProperties section;
+  double length = 0;
+  bool extension = false, shear = false;  ///< effects that change the law
+  bool rotary_inertia = false, damping = false;
+  std::vector<double> stations;        ///< s / L of point loads
+  const SolverSpec* solver = nullptr;  ///< resolution, accuracy
+};
+
+/// What is done with a rod, and why.
+struct MethodChoice {
+  Method method = Method::kShooting;
+  std::string why;  ///< e.g. "the scene asks for it"
+};
+
+/// kAuto resolved: the rod's own method, otherwise the solver's, otherwise one that fits.
+MethodChoice choose_method(const RodSpec& rod, const SolverSpec& solver);
+
+/// Unloaded, from its base frame.
+/// @throws std::invalid_argument for what the method cannot do.
+std::unique_ptr<RodModel> make_rod(Method method, const RodPlan& plan);
+
+}  // namespace cprsim

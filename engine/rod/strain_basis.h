@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A geometrically exact rod whose strains are polynomials along each of its elements
+// (Boyer, Lebastard, Candelier, Renda, IEEE Trans. Robotics 37, 2021; seed equations 9-11):
+//   xi(s) = xi_rest + B Phi(s) q                                                             (1)
+// B holds the strains that the effects leave free, as unit vectors in section axes; the others are
+// not there, neither as unknowns nor as equations. Phi are normalised Legendre polynomials
+// (engine/math/legendre.h), so that the elastic matrix is diagonal.
+//
+//   R_s = R u^    by Magnus steps between the element's Gauss points (engine/rod/magnus.h)     (2)
+//   p_s = R v,  n_s = k p + b,  m_s = -p_s × n + t   by the integration matrix of these points  (3)
+//   ∫ Phi^T B^T (K (xi - xi_rest) + D xi_t - Lambda) ds = 0                                   (4)
+// (4) is the law tested with the basis itself; K, D diagonal; Lambda = (R^T m, R^T n); k, b, t as
+// in engine/rod/cell.h. Deviations from the source: the wrench comes from the strong balance (3) at
+// the quadrature points instead of from the principle of virtual work, which needs no second
+// derivatives and differs by the quadrature's error; positions are integrated in the world instead
+// of in SE(3), so that they and the forces use one rule.
+//
+// Unknowns: pose and wrench at the base, and q. Rows: the base's, (4), the tip's. A direction
+// solves them at once: complete pivoting leaves d = 6 unknowns z (3 in a plane) and the d rows of
+// the tip (engine/rod/rod_model.h), whatever is stiff, free or singular. Elements begin and end at
+// point loads, where the strain is not smooth.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/rod/end_condition.h"
+#include "engine/rod/rod_model.h"
+#include "engine/rod/strain_rule.h"
+#include "engine/section/section.h"
+
+namespace cprsim {
+
+struct StrainOptions {
+  int order = 6;     ///< highest degree of the strain polynomials
+  int elements = 1;  ///< at least; point loads cut further
+  bool extension = false, shear = false;
+  bool rotary_inertia = false, damping = false;
+  std::vector<double> stations;  ///< s / L of point loads
+};
+
+/// One column of B.
+struct StrainMode {
+  Vec3 axis;          ///< section axes
+  bool turns;         ///< of u, otherwise of v
+  double K, damping;  ///< stiffness and damping along it
+  bool listed;        ///< free in this scene; the axial one is also while a rod is softened
+};
+
+/// A section as the last evaluation found it, world axes; u, v in section axes.
+struct StrainPoint {
+  Mat3 R;
+  Vec3 p, n, m, u, v, tau;
+};
+
+class StrainRod final : public RodModel {
+ public:
+  /// @param X_WBase where the unloaded rod begins; in a plane its axes may be turned about the
+  /// tangent. @param plane of a planar scene: e1, e2 and the normal as columns, world.
+  StrainRod(std::string name, const EndCondition& base, const EndCondition& tip,
+            const std::optional<Mat3>& plane, const Pose& X_WBase, const SectionProperties& section,
+            double length, const StrainOptions& options);
+
+  void set_unloaded(const Pose& X_WBase);
+
+  void prepare(const StageRates& rates, const RodForcing& forcing) override;
+  RodResidual evaluate(const Port& base, const Port& tip) override;
+  bool linearize(const Port& base, const Port& tip, CondensedRod& out) override;
+  void set_direction(const Vec6& z, const Vec6& zeta_A) override;
+  void keep() override;
+  void move(double alpha) override;
+  Vec6 wrench_on_base(const Port& base) const override;
+  Vec6 wrench_on_tip(const Port& tip) const override;
+  void capture_gap(const Port& base, const Port& tip) override;
+  void hold_gap(double fraction) override;
+  void bow(const Port& base, const Port& tip) override;
+  void mark_positions() override;
+  std::vector<Track*> tracks() override;
+  void fill_tracks() override;
+
+  Eigen::Index position_coordinates() const override {
+    return 3 * static_cast<Eigen::Index>(points_.size() + nodes_.size());
+  }
+
+  void accept_tracks() override;
+  void start_tracks() override;
+  void start_tracks_moving() override;
+  Unknowns unknowns() const override;
+  void set_unknowns(const Unknowns& u) override;
+  void predict(const std::vector<const Unknowns*>& past,
+               const std::vector<double>& weights) override;
+  void visit(Archive& archive) override;
+  RodSample observe() const override;
+  RodField field() const override;
+  RodEnergy energy() const override;
+  std::string row_name(int row) const override;
+
+  RodResolution resolution() const override {
+    return {Method::kStrain, "legendre", static_cast<int>(elements()), rule_.order};
+  }
+
+  int cells() const override { return static_cast<int>(elements()); }
+
+  int segments() const override { return 1; }
+
+  int unknown_count() const override {
+    return static_cast<int>(space_.state.cols() + strain_unknowns());
+  }
+
+  long section_evaluations() const override { return section_evaluations_; }
+
+  double growth_exponent() const override { return growth_; }
+
+  /// Variational equations at the last evaluate(), by x = (state at the base in units of the scale
+  /// along MotionSpace::state, then q in units 1 / L or 1): state at the tip, and rows of (4).
+  /// For tests.
+  const MatX& tip_columns() const { return tip_columns_; }
+
+  const MatX& law_columns() const { return law_columns_; }
+
+ private:
+  using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  using Rows12 = Eigen::Matrix<double, 12, Eigen::Dynamic>;
+
+  // section and its law
+  void list_modes(const Mat3& R_WBase);
+  double compliance(const StrainMode& mode) const;
+
+  double unit(const StrainMode& mode) const { return mode.turns ? 1 / scale_.length : 1; }
+
+  Vec3 strain(std::size_t element, const Eigen::Ref<const VecX>& phi, bool turns) const;
+
+  std::size_t elements() const { return grid_.size() - 1; }
+
+  double length_of(std::size_t element) const {
+    return (grid_[element + 1] - grid_[element]) * forcing_.length;
+  }
+
+  /// Of q: the position of a free mode's coefficients among all unknown ones.
+  Eigen::Index strain_unknowns() const {
+    return static_cast<Eigen::Index>(elements() * free_modes_.size()) * rule_.functions();
+  }
+
+  Eigen::Index first_unknown(std::size_t element, std::size_t free_mode) const {
+    return static_cast<Eigen::Index>(element * free_modes_.size() + free_mode) * rule_.functions();
+  }
+
+  // the sweep
+  struct Turn {
+    Vec3 Omega;
+    Mat3 R_end;
+  };
+
+  Turn turn(std::size_t element, const StrainRule::Step& step, const Mat3& R_start) const;
+  Mat3 cross_gap(std::size_t element, std::size_t gap, Mat3 R);
+  void evaluate_element(std::size_t element, NodeState& state);
+  void evaluate_rotary_inertia(std::size_t point);
+  void apply_load(std::size_t node, NodeState& state) const;
+  void update_point_inputs();
+  void add_row(RodResidual& r, double value, int row) const;
+
+  // its linearisation
+  void vary_element(std::size_t element, Rows12& y);
+  void vary_gap(std::size_t element, std::size_t gap, Rows3& phi) const;
+  void vary_load(std::size_t node, Rows12& y) const;
+  void vary_law(std::size_t element, const std::vector<Rows3>& n, const std::vector<Rows3>& m);
+  void sweep_columns();
+  VecX state_units() const;
+
+  std::string name_;
+  EndCondition base_, tip_;
+  MotionSpace space_;
+  SectionProperties section_;
+  StrainOptions options_;
+  StrainRule rule_;
+  std::vector<double> grid_;  ///< borders of elements, s / L
+  std::vector<StrainMode> modes_;
+  std::vector<std::size_t> free_modes_;  ///< now: of modes_
+  std::vector<std::size_t> load_at_;     ///< border of forcing_.loads[i]
+
+  // coefficients of the current solve
+  StageRates rates_;
+  RodForcing forcing_;
+  RodScale scale_;
+  double noise_ = 1;  ///< row scales grow by this where round-off exceeds the tolerance
+  double growth_ = 0;
+  double k_ = 0;           ///< N/m², of (3)
+  std::vector<Vec3> b_;    ///< N/m at the points
+  std::vector<MatX> q_0_;  ///< per element, modes × functions: what damping adds to q in (4)
+
+  // unknowns and what the last evaluation found
+  NodeState start_{};    ///< at the base, before any load there
+  std::vector<MatX> q_;  ///< per element, modes × functions
+  std::vector<StrainPoint> points_;
+  std::vector<NodeState> nodes_;  ///< element borders, after any load there
+  std::vector<Turn> turns_;       ///< of every Magnus step
+  VecX law_residual_;             ///< (4)
+  VecX tip_gap_, base_gap_, tip_gap_start_, base_gap_start_;
+  std::vector<Vec3> marked_;
+  bool evaluated_ = false;
+
+  /// Rotary inertia at a point, as engine/section/rotary.h reads and fills it.
+  struct Rotary {
+    double R[9], R_start[9], theta_h[3], omega_h[3];
+    double theta[3], theta_t[3], omega[3], omega_t[3];
+    double torque[3], torque_phi[9];
+  };
+
+  std::vector<Rotary> rotary_;  ///< empty without the effect
+  bool turning_ = false;        ///< rotary inertia acts now
+
+  // linearisation: columns of x
+  MatX tip_columns_, law_columns_;
+  std::vector<Rows3> point_turns_, point_moves_, node_moves_;
+  MatX general_;  ///< x = general_ [z; zeta_A; 1]
+
+  // direction and remembered unknowns
+  VecX direction_;
+  NodeState kept_start_{};
+  std::vector<MatX> kept_q_;
+
+  Track track_;  ///< positions of points and borders, q if damped
+  Track rotation_track_{Track::Kind::kRotation};
+  long section_evaluations_ = 0;
+};
+
+}  // namespace cprsim

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Variational equations of a strain-basis rod and what they leave to the robot. Columns belong to
+// x = (state at the base, q), all in the units of the rod's scale.
+#include <algorithm>
+
+#include "engine/math/linear_solve.h"
+#include "engine/math/so3.h"
+#include "engine/rod/magnus.h"
+#include "engine/rod/strain_basis.h"
+
+namespace cprsim {
+namespace {
+
+using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+}  // namespace
+
+VecX StrainRod::state_units() const {
+  Vec12 units;
+  units << Vec3::Ones(), Vec3::Constant(scale_.length), Vec3::Constant(scale_.force),
+      Vec3::Constant(scale_.moment);
+  return space_.state.cwiseAbs2().transpose() * units;  // a column lies in one of the four blocks
+}
+
+// phi_end = phi + R_end J_r(Omega) dOmega
+void StrainRod::vary_gap(std::size_t e, std::size_t gap, Rows3& phi) const {
+  for (std::size_t k = gap * rule_.per_gap; k < (gap + 1) * rule_.per_gap; ++k) {
+    const StrainRule::Step& step = rule_.steps[k];
+    const Turn& done = turns_[e * rule_.steps.size() + k];
+    Mat3 u;
+    for (Eigen::Index g = 0; g < 3; ++g)
+      u.col(g) = strain(e, step.phi.col(g), true);
+    const Eigen::Matrix<double, 3, 9> by_u =
+        done.R_end * right_jacobian(done.Omega) * magnus_tangent(step.fraction * length_of(e), u);
+    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+      const StrainMode& mode = modes_[free_modes_[f]];
+      if (!mode.turns) continue;
+      const Eigen::Index at = space_.state.cols() + first_unknown(e, f);
+      Mat3 along;
+      for (Eigen::Index g = 0; g < 3; ++g)
+        along.col(g) = unit(mode) * (by_u.middleCols<3>(3 * g) * mode.axis);
+      for (Eigen::Index j = 0; j < rule_.functions(); ++j)
+        phi.col(at + j) += along * Vec3(step.phi.row(j));
+    }
+  }
+}
+
+// A follower load turns with its section: d(R F) = phi × R F.
+void StrainRod::vary_load(std::size_t node, Rows12& y) const {
+  for (std::size_t i = 0; i < load_at_.size(); ++i) {
+    const PointLoad& load = forcing_.loads[i];
+    if (load_at_[i] != node || !load.follower) continue;
+    const Mat3 R = rotation_of(nodes_[node]);
+    y.middleRows<3>(6) += hat(R * load.force) * y.topRows<3>();
+    y.middleRows<3>(9) += hat(R * load.torque) * y.topRows<3>();
+  }
+}
+
+// Variation of (3), in the order of the evaluation.
+void StrainRod::vary_element(std::size_t e, Rows12& y) {
+  const Eigen::Index G = rule_.points();
+  const double h = length_of(e);
+  const auto first = e * static_cast<std::size_t>(G);
+  std::vector<Rows3> tau(static_cast<std::size_t>(G)), n(tau), m(tau), m_s(tau);
+  Rows3 phi = y.topRows<3>();
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    const StrainPoint& point = points_[first + i];
+    vary_gap(e, i, phi);
+    point_turns_[first + i] = phi;
+    // d tau = phi × tau + R dv
+    tau[i] = -hat(point.tau) * phi;
+    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+      const StrainMode& mode = modes_[free_modes_[f]];
+      if (mode.turns) continue;
+      const Vec3 axis = point.R * mode.axis;
+      for (Eigen::Index k = 0; k < rule_.functions(); ++k)
+        tau[i].col(space_.state.cols() + first_unknown(e, f) + k) +=
+            rule_.phi(k, static_cast<Eigen::Index>(i)) * axis;
+    }
+  }
+  vary_gap(e, tau.size(), phi);
+  const auto integral = [&](std::size_t i, const std::vector<Rows3>& rate, double factor,
+                            Rows3& sum) {
+    for (std::size_t j = 0; j < rate.size(); ++j)
+      sum += (factor * h *
+              rule_.integrate(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))) *
+             rate[j];
+  };
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    point_moves_[first + i] = y.middleRows<3>(3);
+    integral(i, tau, 1, point_moves_[first + i]);
+  }
+  const std::vector<Rows3> p(point_moves_.begin() + static_cast<std::ptrdiff_t>(first),
+                             point_moves_.begin() + static_cast<std::ptrdiff_t>(first) + G);
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    const StrainPoint& point = points_[first + i];
+    n[i] = y.middleRows<3>(6);
+    if (k_ != 0) integral(i, p, k_, n[i]);
+    m_s[i] = hat(point.n) * tau[i] - hat(point.tau) * n[i];
+    if (turning_)
+      m_s[i] +=
+          Eigen::Map<const RowMatrix>(rotary_[first + i].torque_phi) * point_turns_[first + i];
+  }
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    m[i] = y.middleRows<3>(9);
+    integral(i, m_s, 1, m[i]);
+  }
+  vary_law(e, n, m);
+  y.topRows<3>() = phi;
+  for (std::size_t i = 0; i < tau.size(); ++i) {
+    const double hw = h * rule_.gauss.weights[static_cast<Eigen::Index>(i)];
+    y.middleRows<3>(3) += hw * tau[i];
+    if (k_ != 0) y.middleRows<3>(6) += (hw * k_) * p[i];
+    y.middleRows<3>(9) += hw * m_s[i];
+  }
+}
+
+// Variation of (4): d(R^T m) = R^T (dm + m × phi).
+void StrainRod::vary_law(std::size_t e, const std::vector<Rows3>& n, const std::vector<Rows3>& m) {
+  const Eigen::Index G = rule_.points(), functions = rule_.functions();
+  for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+    const StrainMode& mode = modes_[free_modes_[f]];
+    const Eigen::Index row = first_unknown(e, f);
+    auto rows = law_columns_.middleRows(row, functions);
+    for (Eigen::Index i = 0; i < G; ++i) {
+      const auto j = static_cast<std::size_t>(i), at = e * static_cast<std::size_t>(G) + j;
+      const StrainPoint& point = points_[at];
+      const Vec3 axis = point.R * mode.axis, arm = (mode.turns ? point.m : point.n).cross(axis);
+      // axis · (dW + W × phi) = axis · dW + (axis × W) · phi
+      const Eigen::RowVectorXd Lambda =
+          axis.transpose() * (mode.turns ? m[j] : n[j]) - arm.transpose() * point_turns_[at];
+      const double C = compliance(mode) * rule_.gauss.weights[i] / unit(mode);
+      for (Eigen::Index k = 0; k < functions; ++k)
+        rows.row(k) -= C * rule_.phi(k, i) * Lambda;
+    }
+    rows.middleCols(space_.state.cols() + row, functions).diagonal().array() += 1;
+  }
+}
+
+void StrainRod::sweep_columns() {
+  const Eigen::Index states = space_.state.cols(), n = strain_unknowns();
+  point_turns_.resize(points_.size());
+  point_moves_.resize(points_.size());
+  node_moves_.resize(nodes_.size());
+  law_columns_.setZero(n, states + n);
+  Rows12 y = Rows12::Zero(12, states + n);
+  y.leftCols(states) = space_.state * state_units().asDiagonal();
+  vary_load(0, y);
+  node_moves_[0] = y.middleRows<3>(3);
+  for (std::size_t e = 0; e < elements(); ++e) {
+    vary_element(e, y);
+    vary_load(e + 1, y);
+    node_moves_[e + 1] = y.middleRows<3>(3);
+  }
+  tip_columns_ = y;
+}
+
+bool StrainRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  const Eigen::Index d = space_.freedoms(), n = strain_unknowns(), states = 2 * d;
+  sweep_columns();
+  // the base's rows and (4): A x + B [zeta_A; 1] = 0
+  const ConditionRows held = base_.rows(start_, base, scale_);
+  const MatX from_x = space_.state * state_units().asDiagonal();
+  MatX A = MatX::Zero(d + n, states + n), B = MatX::Zero(d + n, d + 1);
+  A.topLeftCorner(d, states) = held.by_state * from_x;
+  A.bottomRows(n) = law_columns_;
+  B.topLeftCorner(d, d) = held.by_body * space_.motion;
+  B.topRightCorner(d, 1) = held.value - base_gap_;
+  B.bottomRightCorner(n, 1) = law_residual_;
+  if (!general_solution(A, B, general_)) return false;
+  out.growth = general_.leftCols(d).cwiseAbs().maxCoeff();
+
+  // the tip's rows, and the wrench on its body: force -n, moment -(m + r × n)
+  const MatX Y = tip_columns_ * general_, motion = space_.motion;
+  const ConditionRows closed = tip_.rows(nodes_.back(), tip, scale_);
+  const MatX T = closed.by_state * Y;
+  out.T.topLeftCorner(d, d) = T.leftCols(d);
+  out.T_A.topLeftCorner(d, d) = T.middleCols(d, d);
+  out.T_B.topLeftCorner(d, d) = closed.by_body * motion;
+  out.t.head(d) = closed.value - tip_gap_ + T.col(states);
+  const auto moment_arm = [](const NodeState& end, const Vec3& r) {
+    Mat6x12 W = Mat6x12::Zero();
+    W.block<3, 3>(0, 3) = -hat(force_of(end));
+    W.block<3, 3>(0, 6) = hat(r);
+    W.block<3, 3>(0, 9) = W.block<3, 3>(3, 6) = Mat3::Identity();
+    return W;
+  };
+  Mat6 by_body = Mat6::Zero();
+  const NodeState& end = nodes_.back();
+  MatX W = MatX::Zero(d, states + 1);
+  if (tip_.held()) {
+    W = -motion.transpose() * moment_arm(end, position_of(end) - tip.p + tip.arm) * Y;
+    W.col(states) += motion.transpose() * wrench_on_tip(tip);
+    by_body.block<3, 3>(0, 3) = -hat(force_of(end));
+  }
+  out.WB_z.topLeftCorner(d, d) = W.leftCols(d);
+  out.WB_A.topLeftCorner(d, d) = W.middleCols(d, d);
+  out.wb.head(d) = W.col(states);
+  out.WB_B.topLeftCorner(d, d) = motion.transpose() * by_body * motion;
+
+  // the wrench on the base's body
+  by_body.block<3, 3>(0, 3) = hat(force_of(start_));
+  W = motion.transpose() * moment_arm(start_, position_of(start_) - base.p + base.arm) * from_x *
+      general_.topRows(states);
+  W.col(states) += motion.transpose() * wrench_on_base(base);
+  W.middleCols(d, d) += motion.transpose() * by_body * motion;
+  const double moved = base_.held() && base.moves ? 1 : 0;
+  out.WA_z.topLeftCorner(d, d) = moved * W.leftCols(d);
+  out.WA_A.topLeftCorner(d, d) = moved * W.middleCols(d, d);
+  out.wa.head(d) = moved * W.col(states);
+  return true;
+}
+
+Vec6 StrainRod::wrench_on_base(const Port& base) const {
+  const Vec3 r = position_of(start_) - base.p + base.arm;
+  Vec6 w;
+  w << moment_of(start_) + r.cross(force_of(start_)), force_of(start_);
+  return space_.motion * (space_.motion.transpose() * w);
+}
+
+Vec6 StrainRod::wrench_on_tip(const Port& tip) const {
+  const NodeState& end = nodes_.back();
+  const Vec3 r = position_of(end) - tip.p + tip.arm;
+  Vec6 w;
+  w << -(moment_of(end) + r.cross(force_of(end))), -force_of(end);
+  return space_.motion * (space_.motion.transpose() * w);
+}
+
+void StrainRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
+  const Eigen::Index d = space_.freedoms();
+  direction_ = general_.leftCols(d) * z.head(d) + general_.middleCols(d, d) * zeta_A.head(d) +
+               general_.col(2 * d);
+}
+
+void StrainRod::keep() {
+  kept_start_ = start_;
+  kept_q_ = q_;
+}
+
+void StrainRod::move(double alpha) {
+  const Eigen::Index states = space_.state.cols(), functions = rule_.functions();
+  const Vec12 y = space_.state * state_units().cwiseProduct(alpha * direction_.head(states));
+  Eigen::Map<RowMatrix>(start_.R) =
+      orthonormalized(exp_so3(y.head<3>()) * Mat3(rotation_of(kept_start_)));
+  Eigen::Map<Vec3>(start_.p) = position_of(kept_start_) + y.segment<3>(3);
+  Eigen::Map<Vec3>(start_.n) = force_of(kept_start_) + y.segment<3>(6);
+  Eigen::Map<Vec3>(start_.m) = moment_of(kept_start_) + y.segment<3>(9);
+  for (std::size_t e = 0; e < elements(); ++e)
+    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+      const auto a = static_cast<Eigen::Index>(free_modes_[f]);
+      q_[e].row(a) = kept_q_[e].row(a) +
+                     (alpha * unit(modes_[free_modes_[f]])) *
+                         direction_.segment(states + first_unknown(e, f), functions).transpose();
+    }
+}
+
+}  // namespace cprsim

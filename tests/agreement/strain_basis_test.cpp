@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is particular to rods of polynomial strain: errors that fall exponentially with the order.
+#include "engine/rod/strain_basis.h"
+
+#include <gtest/gtest.h>
+
+#include <iomanip>
+
+#include "tests/support/elastica.h"
+#include "tests/support/methods.h"
+#include "tests/support/robots.h"
+
+namespace cprsim {
+namespace {
+
+Scene bent_rod(double s, int order, int elements = 1) {
+  Scene scene;
+  scene.rods.push_back(steel_rod(0.4, 1e-3));
+  const double P = 5 * bending_stiffness(scene.rods[0]) / 0.16;
+  add_load(scene, s, {P, 0, 0});
+  scene.solver.method = Method::kStrain;
+  scene.solver.order = order;
+  scene.solver.elements = elements;
+  return scene;
+}
+
+Vec3 tip(const Scene& scene) {
+  const Equilibrium equilibrium(scene, 1e-13);
+  EXPECT_TRUE(equilibrium.report.converged()) << equilibrium.report.worst_row;
+  return equilibrium.rod().points.back().position / 0.4;
+}
+
+// each order gains a digit, until the Magnus steps are what is left
+TEST(StrainBasis, ConvergesExponentiallyToTheElastica) {
+  const Elastica exact = solve_elastica(5);
+  std::cout << "order  error of the tip / L\n";
+  double last = 1;
+  for (int order = 1; order <= 10; ++order) {
+    const double error = (tip(bent_rod(1, order)) - Vec3(exact.x, 0, exact.z)).norm();
+    std::cout << std::setw(5) << order << "  " << error << "\n";
+    if (order % 2 == 1) {
+      EXPECT_LT(error, std::max(0.03 * last, 2e-11)) << "order " << order;
+      last = error;
+    }
+  }
+  EXPECT_LT(last, 2e-11);
+}
+
+// with a load inside, where the curvature has a kink, it is as fast: elements end there
+TEST(StrainBasis, ConvergesExponentiallyWithALoadInside) {
+  const Vec3 exact = tip(finely(bent_rod(0.37, 1), Method::kShooting));
+  double last = 1;
+  for (int order : {1, 3, 5}) {
+    const Scene scene = bent_rod(0.37, order);
+    const double error = (tip(scene) - exact).norm();
+    EXPECT_LT(error, std::max(0.03 * last, 1e-9)) << "order " << order;
+    last = error;
+    EXPECT_EQ(Equilibrium(scene).robot.rods[0].model->resolution().elements, 2);
+  }
+  EXPECT_LT(last, 1e-8);
+}
+
+TEST(StrainBasis, HasOnlyTheStrainsThatEffectsAllow) {
+  Scene scene = bent_rod(1, 4);
+  Equilibrium before(scene);
+  EXPECT_EQ(before.robot.rods[0].model->unknown_count(), 12 + 3 * 5);
+  switch_on(scene, {Effect::kExtension});
+  EXPECT_EQ(Equilibrium(scene).robot.rods[0].model->unknown_count(), 12 + 4 * 5);
+  switch_on(scene, {Effect::kShear});
+  EXPECT_EQ(Equilibrium(scene).robot.rods[0].model->unknown_count(), 12 + 6 * 5);
+  scene.planar_normal = Vec3::UnitY();
+  EXPECT_EQ(Equilibrium(scene).robot.rods[0].model->unknown_count(), 6 + 3 * 5);
+  scene.effects = {};
+  EXPECT_EQ(Equilibrium(scene).robot.rods[0].model->unknown_count(), 6 + 5);
+}
+
+}  // namespace
+}  // namespace cprsim

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every discretisation of a rod, for tests that hold for all of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/model/scene.h"
+
+namespace cprsim {
+
+inline constexpr Method kEveryMethod[] = {Method::kShooting, Method::kStrain};
+
+inline std::string name_of(Method method) {
+  switch (method) {
+    case Method::kAuto:
+      return "auto";
+    case Method::kShooting:
+      return "shooting";
+    case Method::kStrain:
+      return "strain";
+    case Method::kCollocation:
+      return "collocation";
+  }
+  return "";
+}
+
+/// The scene with rods cut so finely, by this method, that 1e-9 of their length is left of errors
+/// where they bend by a few radians.
+inline Scene finely(Scene scene, Method method) {
+  scene.solver.method = method;
+  if (method == Method::kShooting) scene.solver.points = 30;
+  if (method == Method::kStrain) {
+    scene.solver.order = 8;
+    scene.solver.elements = 2;
+  }
+  return scene;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/series/read_series.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scenes/loader/files.h"
+#include "scenes/loader/values.h"
+
+namespace cprsim {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_time(const std::string& name) {
+  return name == "time" || name == "t" || name == "stamp" || name == "timestamp";
+}
+
+/// The first line that is neither empty nor a comment.
+std::string_view first_line(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trim(text.substr(0, end));
+    if (!line.empty() && line.front() != '#') return line;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return {};
+}
+
+bool is_tum(std::string_view text) {
+  const auto numbers = parse_numbers(first_line(text));
+  return numbers && numbers->size() == 8;
+}
+
+void require_increasing(const Series& series, const std::vector<int>& lines) {
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (std::isnan(series.time[i]))
+      throw TableError(fmt::format("{}:{}: no time is given", series.path, lines[i]));
+    if (i > 0 && series.time[i] <= series.time[i - 1])
+      throw TableError(fmt::format("{}:{}: time does not increase", series.path, lines[i]));
+  }
+}
+
+Series parse_tum(std::string_view text, const std::string& name) {
+  Series series;
+  series.path = name;
+  for (const char* letter : {"x", "y", "z"})
+    series.columns.push_back({std::string("position.") + letter, "m", {}});
+  for (const char* letter : {"x", "y", "z", "w"})
+    series.columns.push_back({std::string("orientation.") + letter, "1", {}});
+  std::vector<int> lines;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = trim(text.substr(at, end - at));
+    at = end + 1;
+    ++number;
+    if (line.empty() || line.front() == '#') continue;
+    const auto numbers = parse_numbers(line);
+    if (!numbers || numbers->size() != series.columns.size() + 1)
+      throw TableError(fmt::format(
+          "{}:{}: a line of a TUM trajectory is eight numbers, t x y z qx qy qz qw", name, number));
+    series.time.push_back(numbers->front());
+    for (std::size_t i = 0; i < series.columns.size(); ++i)
+      series.columns[i].values.push_back((*numbers)[i + 1]);
+    lines.push_back(number);
+  }
+  require_increasing(series, lines);
+  return series;
+}
+
+Series to_series(const MeasuredTable& table) {
+  Series series;
+  series.path = table.path;
+  for (const MeasuredColumn& column : table.columns) {
+    const auto unit = si_unit(column.unit);
+    std::vector<double> values = column.values;
+    for (double& value : values)
+      value *= unit ? unit->factor : 1;
+    if (is_time(column.name) && series.time.empty())
+      series.time = std::move(values);
+    else
+      series.columns.push_back({column.name, unit ? unit->name : "", std::move(values)});
+  }
+  if (series.time.empty())
+    throw TableError(table.path + ": no column is called time [s] (nor t, stamp, timestamp)");
+  require_increasing(series, table.lines);
+  return series;
+}
+
+}  // namespace
+
+Series parse_series(const std::string& text, const std::string& name) {
+  if (is_tum(text)) return parse_tum(text, name);
+  return to_series(parse_measured_table(text, name));
+}
+
+Series read_series(const std::string& path) {
+  const FileContent content = read_file(path);
+  if (!content.code.empty()) {
+    throw TableError(path + (content.code == "E101" ? ": cannot be opened: " : ": the file ") +
+                     content.message);
+  }
+  return parse_series(content.text, path);
+}
+
+RecordedRun read_run(const std::string& folder) {
+  const fs::path file = fs::path(folder) / "run.json";
+  std::ifstream stream(file);
+  const nlohmann::json report = nlohmann::json::parse(stream, nullptr, false);
+  if (!stream || !report.is_object() || report.value("schema", "").rfind("cprsim-run/", 0) != 0)
+    throw std::runtime_error(folder + " holds no run of cprsim (no run.json)");
+  RecordedRun run;
+  run.label = report.value("label", "run");
+  run.folder = folder;
+  const nlohmann::json files = report.value("files", nlohmann::json::array());
+  for (const nlohmann::json& entry : files)
+    if (entry.value("kind", "") == "csv")
+      run.recordings.push_back(read_series((fs::path(folder) / entry.value("name", "")).string()));
+  if (run.recordings.empty())
+    throw std::runtime_error(folder +
+                             ": the run recorded no CSV file; its scene needs a <cprsim:record> "
+                             "with <csv/> and the channels");
+  const nlohmann::json method = report.value("method", nlohmann::json::object());
+  const nlohmann::json rods = method.value("rods", nlohmann::json::array());
+  for (const nlohmann::json& rod : rods)
+    if (rod.contains("length"))
+      run.longest_rod = std::max(run.longest_rod.value_or(0), rod.value("length", 0.0));
+  return run;
+}
+
+}  // namespace cprsim

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Trajectories from files: CSV with a time column, TUM (t x y z qx qy qz qw), or a recorded run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/series/measured_table.h"
+#include "tools/series/series.h"
+
+namespace cprsim {
+
+/// CSV: a column called time, t or stamp, others by name. A file whose first line of data is eight
+/// numbers is TUM; its columns are position.x .. orientation.w. Units that a header names are
+/// turned into SI; where it names none the column's unit stays empty.
+/// @throws TableError
+Series read_series(const std::string& path);
+Series parse_series(const std::string& text, const std::string& name);
+
+/// What a run recorded: its folder, and what run.json there says.
+struct RecordedRun {
+  std::string label, folder;
+  std::vector<Series> recordings;     ///< one per CSV file
+  std::optional<double> longest_rod;  ///< m
+};
+
+/// @throws TableError, std::runtime_error if the folder holds no run or the run no CSV file
+RecordedRun read_run(const std::string& folder);
+
+}  // namespace cprsim
