@@ -27,6 +27,7 @@ Examples
   cprsim run scene.xml --duration 1 --with shear -o try
   cprsim scene.xml --without damping --still shot.png@0.5
   cprsim check scenes/robots/*.xml          only validate
+  cprsim test scenes                        run what they expect
   cprsim info scene.xml                     stiffness, frequencies, effects and their advisor
   cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0
   cprsim identify scene.xml tips.csv --fit rod/material/youngs_modulus
@@ -37,7 +38,7 @@ Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
 
 Commands
-  run check info           simulate, verify, look into a scene
+  run check info test      simulate, verify, look into a scene; scenes as tests
   solve modes              equilibria, inverse problems, stability, natural frequencies
   path                     equilibria through folds and branch points
   identify                 fit values of a scene to measurements
@@ -72,6 +73,7 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"workspace", workspace_command},
                                Command{"identify", identify_command},
                                Command{"compare", compare_command},
+                               Command{"test", test_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};
 

@@ -66,6 +66,9 @@ std::string to_json(const Scene& scene, const RunReport& report);
 std::string rejection_json(const std::string& path, int exit_code,
                            const std::vector<Diagnostic>& diagnostics);
 
+/// The value that was seen and the one that was expected, for people; one line without its end.
+std::string describe(const CheckResult& check);
+
 /// The closing lines, for people.
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder);
 

@@ -64,12 +64,6 @@ std::string energy_line(const Scene& scene, const RunReport& report) {
                      extremes.worst_balance() / extremes.exchanged(), of);
 }
 
-std::string check_line(const CheckResult& check) {
-  if (check.channel.empty()) return fmt::format("{}: the run did not converge", check.kind);
-  return fmt::format("{} = {:.6g} at t = {:.6g} s, expected {}", check.channel, check.value,
-                     check.time, check.limit);
-}
-
 std::string expect_lines(const RunReport& report) {
   const auto count = [&](Verdict verdict) {
     return std::count_if(report.expectations.begin(), report.expectations.end(),
@@ -86,7 +80,7 @@ std::string expect_lines(const RunReport& report) {
     if (result.verdict == Verdict::kMet) continue;
     lines += fmt::format("    {}: '{}'\n", to_string(result.verdict), result.name);
     for (const CheckResult& check : result.checks) {
-      if (check.verdict == Verdict::kNotMet) lines += "      " + check_line(check) + "\n";
+      if (check.verdict == Verdict::kNotMet) lines += "      " + describe(check) + "\n";
     }
   }
   return lines;
@@ -130,6 +124,17 @@ const char* to_string(RunEnd end) {
       return "output failed";
   }
   return "";
+}
+
+std::string describe(const CheckResult& check) {
+  if (check.channel.empty())
+    return check.kind == "event" ? fmt::format("expected {}, which did not come about", check.limit)
+                                 : fmt::format("{}: the run did not converge", check.kind);
+  if (check.kind == "match")
+    return fmt::format("{} is off by {:.6g}, largest at t = {:.6g} s, expected {}", check.channel,
+                       check.value, check.time, check.limit);
+  return fmt::format("{} = {:.6g} at t = {:.6g} s, expected {}", check.channel, check.value,
+                     check.time, check.limit);
 }
 
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder) {
