@@ -41,6 +41,16 @@ void forget_methods(Node& node) {
     forget_methods(*child);
 }
 
+// whoever asks for an accuracy leaves resolution and steps to the program
+void forget_resolution(Node& solver) {
+  for (const auto& child : solver.children)
+    if (child->name == "time" || child->name == "space")
+      std::erase_if(child->attributes, [](const Attribute& a) {
+        return a.name != "scheme" && a.name != "alpha" && a.name != "rho_inf" &&
+               a.name != "integrator" && a.name != "basis";
+      });
+}
+
 void set_text(Node& node, const std::string& text) {
   node.text = text;
   node.text_place = {};
@@ -76,6 +86,7 @@ void set_solver_setting(Node& world, std::string_view name, const std::string& v
   Node& solver = physics_of(world).need("cprsim:solver");
   if (!solver.attribute("method")) solver.set_attribute("method", "auto");
   if (name == "method") forget_methods(world);
+  if (name == "accuracy") forget_resolution(solver);
   if (name == "step") set_text(physics_of(world).need("max_step_size"), value);
   Node& node = *setting->element == '\0' ? solver : solver.need(setting->element);
   if (*setting->attribute == '\0') {

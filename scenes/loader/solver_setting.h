@@ -16,7 +16,7 @@ bool is_solver_setting(std::string_view name);
 
 /// Puts the setting where it belongs in the tree of the world, and takes out what excludes it: a
 /// step a tolerance and the other way round, a scheme the parameters of another one, a method those
-/// of single rods. A step is that of bodies without rods, too.
+/// of single rods, an accuracy every resolution. A step is that of bodies without rods, too.
 /// @param name one of solver_settings()
 void set_solver_setting(Node& world, std::string_view name, const std::string& value);
 

@@ -50,7 +50,11 @@ TEST(Overrides, ReachSettingsOfTheSolverByOneWord) {
   EXPECT_FALSE(fixed.scene->solver.alpha);
   EXPECT_EQ(fixed.scene->solver.points, 12);
   EXPECT_EQ(fixed.scene->solver.residual_tolerance, 1e-11);
-  EXPECT_EQ(with("accuracy", "1e-4").scene->solver.accuracy, 1e-4);
+  // an accuracy leaves resolution and steps to the program
+  const LoadResult asked =
+      with_all({{"points", "12"}, {"tolerance", "1e-6"}, {"accuracy", "1e-4"}});
+  EXPECT_EQ(asked.scene->solver.accuracy, 1e-4);
+  EXPECT_FALSE(asked.scene->solver.points || asked.scene->solver.tolerance);
   EXPECT_EQ(error_codes(with("scheme", "bdf7")), std::vector<std::string>{"E307"});
   EXPECT_EQ(error_codes(with("schem", "bdf2")), std::vector<std::string>{"E311"});
 }

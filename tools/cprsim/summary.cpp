@@ -64,6 +64,10 @@ std::string energy_line(const Scene& scene, const RunReport& report) {
                      extremes.worst_balance() / extremes.exchanged(), of);
 }
 
+std::string accuracy_line(const RunReport& report) {
+  return report.accuracy ? "  accuracy   " + describe(*report.accuracy) + "\n" : "";
+}
+
 std::string expect_lines(const RunReport& report) {
   const auto count = [&](Verdict verdict) {
     return std::count_if(report.expectations.begin(), report.expectations.end(),
@@ -137,9 +141,21 @@ std::string describe(const CheckResult& check) {
                      check.time, check.limit);
 }
 
+std::string describe(const AccuracyReport& accuracy) {
+  std::string text = fmt::format(
+      "{:.3g} m asked for, error about {:.1g} m (largest distance from a looser run / 3; "
+      "{} runs in all)",
+      accuracy.asked, accuracy.estimate, accuracy.runs);
+  if (accuracy.reached()) return text;
+  return text + (accuracy.held_back.empty()
+                     ? "; not reached"
+                     : "; not reached: the scene fixes " + accuracy.held_back);
+}
+
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder) {
   return first_line(report) + effects_line(scene) + solver_line(scene, report) +
-         energy_line(scene, report) + expect_lines(report) + wrote_line(report, folder);
+         accuracy_line(report) + energy_line(scene, report) + expect_lines(report) +
+         wrote_line(report, folder);
 }
 
 std::string explain_failure(const RunReport& report, const std::string& folder) {
