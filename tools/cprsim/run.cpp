@@ -9,6 +9,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/commands.h"
 #include "tools/cprsim/exit_code.h"
@@ -33,6 +34,7 @@ struct Run {
   std::filesystem::path folder;
   Stopwatch watch;
   RunReport report;
+  PositionTrack* track = nullptr;  ///< if an accuracy is asked for
 
   void write_report() const { write_file(folder / "run.json", to_json(scene, report)); }
 };
@@ -53,11 +55,15 @@ bool must_stop(Run& run) {
 void simulate(Run& run, Simulation& simulation, Outputs& outputs) {
   Progress progress(run.console.progress(), run.report.label, simulation.end_time());
   simulation.start();
-  if (simulation.status() != RunStatus::kFailed) outputs.begin(simulation.now());
+  if (simulation.status() != RunStatus::kFailed) {
+    outputs.begin(simulation.now());
+    if (run.track != nullptr) run.track->begin(simulation.now());
+  }
   while (simulation.status() == RunStatus::kRunning && !must_stop(run)) {
     simulation.advance();
     if (simulation.status() == RunStatus::kFailed) break;
     outputs.step(simulation.before(), simulation.now());
+    if (run.track != nullptr) run.track->step(simulation.before(), simulation.now());
     progress.update(simulation.time(), simulation.statistics().steps,
                     simulation.statistics().iterations);
   }
@@ -137,7 +143,7 @@ void show(const Run& run) {
   run.console.error(explain_failure(report, run.folder.string()));
 }
 
-int run_scene(Run& run, Simulation& simulation) {
+void run_scene(Run& run, Simulation& simulation) {
   const OutputFolder folder(run.folder);
   run.report.facts = simulation.facts();
   run.report.end_time = simulation.end_time();
@@ -154,8 +160,25 @@ int run_scene(Run& run, Simulation& simulation) {
     run.report.failure = error.what();
     run.report.exit_code = kExitEnvironment;
   }
+}
+
+/// Runs once, or, where an accuracy is asked for, until the error found out is small enough.
+int run_to_accuracy(Run& run) {
+  AccuracyControl control(run.scene);
+  if (control.asked()) control.fly_pilot([&] { return must_stop(run); });
+  for (bool again = true; again;) {
+    const auto simulation = build_simulation(control.scene());
+    if (control.asked()) run.track = &control.track();
+    run_scene(run, *simulation);
+    const bool judge = control.asked() && run.report.end == RunEnd::kDone;
+    again = judge && control.refine(simulation->statistics().section_evaluations);
+    if (judge) run.report.accuracy = control.report();
+    if (again) run.report.end = RunEnd::kRunning;
+  }
   run.write_report();
   show(run);
+  if (run.report.accuracy && !run.report.accuracy->reached())
+    run.console.warn(describe(*run.report.accuracy));
   return run.report.exit_code;
 }
 
@@ -206,8 +229,7 @@ int run_command(const Words& words) {
   Run run{scene, options,          console, choose_output_folder(options.output, report.label),
           watch, std::move(report)};
   try {
-    const auto simulation = build_simulation(scene);
-    return run_scene(run, *simulation);
+    return run_to_accuracy(run);
   } catch (const std::invalid_argument& error) {
     console.error(options.path + ": " + error.what());
     return kExitSceneInvalid;
