@@ -114,7 +114,8 @@ std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* 
   }
   if (pattern.substr(0, 8) == "contact(") {
     r.report.error("E520", node, "channels of single contacts are not available in this version",
-                   "available: contact.count, contact.penetration");
+                   "available: contact.count, contact.penetration, contact.force, "
+                   "contact.friction, contact.slip");
     return channels;
   }
   // of something that is there but could not be read: its own error is enough
