@@ -196,16 +196,6 @@ bool RodContacts::leapt() const {
   return false;
 }
 
-double RodContacts::worst_depth() {
-  double deepest = 0;
-  for (Rod& rod : rods_) {
-    if (far_away(rod)) continue;
-    scan(rod);
-    deepest = std::max(deepest, -rod.scan.clearance / rod.radius);
-  }
-  return deepest;
-}
-
 std::string RodContacts::overlap() {
   for (Rod& rod : rods_) {
     scan(rod);

@@ -12,6 +12,7 @@
 // distance from the solid, unless a contact holds it on its side. Planes have no other side.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "engine/robot/robot.h"
@@ -47,9 +48,6 @@ class RodContacts {
 
   /// Whether something may have passed through an obstacle since begin_step().
   bool leapt() const;
-
-  /// Deepest penetration over the rod's radius, anywhere along a rod.
-  double worst_depth();
 
   /// The rod that is inside an obstacle by more than the tolerance, and the obstacle; or nothing.
   std::string overlap();
