@@ -16,7 +16,7 @@
 // of in SE(3), so that they and the forces use one rule.
 //
 // Unknowns: pose and wrench at the base, and q. Rows: the base's, (4), the tip's. A direction
-// solves them at once: complete pivoting leaves d = 6 unknowns z (3 in a plane) and the d rows of
+// solves them at once: elimination leaves d = 6 unknowns z (3 in a plane) and the d rows of
 // the tip (engine/rod/rod_model.h), whatever is stiff, free or singular. Elements begin and end at
 // point loads, where the strain is not smooth.
 #pragma once
