@@ -154,6 +154,7 @@ class StrainRod final : public RodModel {
   Turn turn(std::size_t element, const StrainRule::Step& step, const Mat3& R_start) const;
   Mat3 cross_gap(std::size_t element, std::size_t gap, Mat3 R);
   void evaluate_element(std::size_t element, NodeState& state);
+  void project_law(std::size_t element);
   void evaluate_rotary_inertia(std::size_t point);
   void apply_load(std::size_t node, NodeState& state) const;
   void update_point_inputs();

@@ -5,6 +5,7 @@
 
 #include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
+#include "engine/rod/end_wrench.h"
 #include "engine/rod/magnus.h"
 #include "engine/rod/strain_basis.h"
 
@@ -212,18 +213,11 @@ bool StrainRod::linearize(const Port& base, const Port& tip, CondensedRod& out) 
 }
 
 Vec6 StrainRod::wrench_on_base(const Port& base) const {
-  const Vec3 r = position_of(start_) - base.p + base.arm;
-  Vec6 w;
-  w << moment_of(start_) + r.cross(force_of(start_)), force_of(start_);
-  return space_.motion * (space_.motion.transpose() * w);
+  return space_.motion * (space_.motion.transpose() * cprsim::wrench_on_base(start_, base));
 }
 
 Vec6 StrainRod::wrench_on_tip(const Port& tip) const {
-  const NodeState& end = nodes_.back();
-  const Vec3 r = position_of(end) - tip.p + tip.arm;
-  Vec6 w;
-  w << -(moment_of(end) + r.cross(force_of(end))), -force_of(end);
-  return space_.motion * (space_.motion.transpose() * w);
+  return space_.motion * (space_.motion.transpose() * cprsim::wrench_on_tip(nodes_.back(), tip));
 }
 
 void StrainRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
