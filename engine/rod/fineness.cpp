@@ -22,9 +22,10 @@ double turn_of(const RodPlan& plan) {
 // (8 / E)^order of it, where order is p for even p and p + 1 for odd p.
 constexpr double kSplineError[] = {2.4e-3, 4.5e-6, 7.2e-6, 4.5e-7, 1.5e-7, 2e-9, 3.3e-10};
 
-// Strain basis: degree N leaves 10^-(1.25 N + 0.5) of the length on a rod bent by a radian or two,
-// and one element follows about four radians of winding as well.
-constexpr double kDigitsPerDegree = 1.25, kFirstDigits = 0.5, kTurnPerElement = 4;
+// Strain basis: on a rod bent by a radian or two degree N leaves less than 10^-(N + 1.5) of the
+// length, and one element follows about four radians of winding as well. A degree for every power
+// of ten: ten times less error asked for must not be the same rod again.
+constexpr double kFirstDigits = 1.5, kTurnPerElement = 4;
 
 Method fitting_method(const SolverSpec& solver, std::string& why) {
   if (solver.points || solver.integrator) {
@@ -70,8 +71,7 @@ int strain_order(const RodPlan& plan) {
   if (solver.order) return *solver.order;
   if (!solver.accuracy) return 6;
   const double digits = std::log10(10 * plan.spec->length / *solver.accuracy);
-  return static_cast<int>(
-      std::clamp(std::ceil((digits - kFirstDigits) / kDigitsPerDegree), 3.0, 16.0));
+  return static_cast<int>(std::clamp(std::ceil(digits - kFirstDigits), 3.0, 16.0));
 }
 
 int strain_elements(const RodPlan& plan) {
