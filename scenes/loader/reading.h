@@ -45,7 +45,7 @@ void read_joints(Reading& reading, const Node& world);    // rigid joints
 void read_rods(Reading& reading, const Node& world);      // rods and their classes
 void read_profiles(Reading& reading, const Node& world);
 void read_actions(Reading& reading, const Node& world);  // drives, loads, initial velocities
-void read_targets(Reading& reading);                      // after the drives
+void read_targets(Reading& reading);                     // after the drives
 void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings
 void read_outputs(Reading& reading, const Node& world);  // videos, records, expectations, sweeps
 void read_expect(Reading& reading, const Node& node);
