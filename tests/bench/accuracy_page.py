@@ -10,6 +10,7 @@ Writes DIR/accuracy.md and, per scene, DIR/accuracy/NAME.svg and NAME.csv.
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -52,8 +53,8 @@ and the same for your own scene is one command: `cprsim sweep scene.xml`, which 
 
 **Error** is how far the solution strays from a much finer one (its settings stand with each scene), at the worst of
 1001 instants, ends of steps or not. **CPU time** is that of one core for building, starting and stepping, without files
-and pictures, the best of three where runs are short. It was taken on {machine}, shared with other work, and would be
-different elsewhere. **Section evaluations**, how often the equations of a rod's cross-section were evaluated, are the
+and pictures, the best of three where runs are short. It was taken on {machine}, shared with other work (revision
+{revision}), and would be different elsewhere. **Section evaluations**, how often the equations of a rod's cross-section were evaluated, are the
 same on every machine: compare methods by them. (Strain and collocation evaluate larger sections of algebra between
 them, so one evaluation stands for more work there than in shooting.)
 
@@ -147,7 +148,7 @@ def section(program, scene, options, about, folder, quick):
     name = os.path.splitext(os.path.basename(scene))[0]
     with tempfile.TemporaryDirectory() as scratch:
         out = os.path.join(scratch, "sweep")
-        words = [program, "sweep", scene, *options, "-o", out, "-q"]
+        words = [program, "sweep", scene, "--sweep", "all", *options, "-o", out, "-q", "--progress", "none"]
         if quick and "--quick" not in words:
             words.append("--quick")
         print(" ".join(words[1:]), flush=True)
@@ -157,7 +158,7 @@ def section(program, scene, options, about, folder, quick):
         for kind in ("svg", "csv"):
             shutil.copy(os.path.join(out, "sweep." + kind), os.path.join(folder, "accuracy", f"{name}_sweep.{kind}"))
     unit = report["measures"][0]["unit"]
-    shown = " ".join(["cprsim sweep", scene, *options])
+    shown = " ".join(["cprsim sweep", scene, "--sweep all", *options])
     return "\n".join([
         f"## {name}", "", about, "", f"**{report['words']}**", "", f"![Error against cost](accuracy/{name}_sweep.svg)", "",
         f"`{shown}`: {failures_text(report)} Errors of `{report['measures'][0]['name']}` against {report['reference']}, "
@@ -221,7 +222,8 @@ def main():
     program, folder = arguments
     os.makedirs(os.path.join(folder, "accuracy"), exist_ok=True)
     command = "python3 tests/bench/accuracy_page.py build/bin/cprsim docs" + (" --quick" if quick else "")
-    page = PREFACE.format(command=command, machine=machine())
+    revision = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout
+    page = PREFACE.format(command=command, machine=machine(), revision=re.sub(r".*\((\S+?),.*", r"\1", revision.strip()))
     for scene, options, about in SCENES:
         page += "\n" + section(program, scene, options, about, folder, quick)
     page += "\n" + accuracy_section(program, quick)
