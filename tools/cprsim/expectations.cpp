@@ -108,6 +108,22 @@ void Expectations::step(const Snapshot& before, const Snapshot& now) {
   }
 }
 
+void Expectations::visit(Archive& archive) {
+  constexpr std::size_t kMostChannels = 100'000;
+  for (std::vector<Watch>& watches : watches_)
+    for (Watch& watch : watches) {
+      watch.reader.visit(archive);
+      archive(watch.reached_end);
+      watch.first.resize(archive.count(watch.first.size(), kMostChannels));
+      archive.doubles(watch.first);
+      archive(watch.worst);
+      archive(watch.at_worst.channel);
+      archive(watch.at_worst.value);
+      archive(watch.at_worst.time);
+      archive(watch.at_worst.limit);
+    }
+}
+
 void Expectations::follow(Watch& watch, const Snapshot& before, const Snapshot& now) const {
   const Expectation& expected = watch.expected;
   if (expected.kind == ExpectKind::kConverged) return;

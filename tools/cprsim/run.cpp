@@ -9,6 +9,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "engine/math/state_text.h"
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/commands.h"
 #include "tools/cprsim/exit_code.h"
@@ -19,6 +20,7 @@
 #include "tools/cprsim/progress.h"
 #include "tools/cprsim/run_options.h"
 #include "tools/cprsim/run_report.h"
+#include "tools/cprsim/state_files.h"
 #include "tools/cprsim/stopwatch.h"
 #include "tools/sinks/output_file.h"
 
@@ -50,26 +52,34 @@ bool must_stop(Run& run) {
 }
 
 /// Advances to the end, or to what stops it; the loop of the program.
-void simulate(Run& run, Simulation& simulation, Outputs& outputs) {
+void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& states) {
   Progress progress(run.console.progress(), run.report.label, simulation.end_time());
-  simulation.start();
-  if (simulation.status() != RunStatus::kFailed) outputs.begin(simulation.now());
+  states.start(simulation);
+  if (simulation.status() != RunStatus::kFailed) {
+    const std::string warning = states.start(outputs, simulation);
+    if (!warning.empty()) run.console.warn(warning);
+  }
   while (simulation.status() == RunStatus::kRunning && !must_stop(run)) {
     simulation.advance();
     if (simulation.status() == RunStatus::kFailed) break;
     outputs.step(simulation.before(), simulation.now());
+    states.step(simulation, outputs);
     progress.update(simulation.time(), simulation.statistics().steps,
                     simulation.statistics().iterations);
   }
   progress.finish();
   if (simulation.status() == RunStatus::kDone) run.report.end = RunEnd::kDone;
+  if (run.report.end == RunEnd::kInterrupted || run.report.end == RunEnd::kWallTime)
+    states.write("checkpoint.state", simulation, outputs);
+  if (simulation.status() == RunStatus::kFailed && simulation.statistics().steps > 0)
+    states.write("failure.state", simulation, outputs);
 }
 
 /// The same, with whatever disk, pipe or graphics have to complain about.
-void simulate_or_complain(Run& run, Simulation& simulation, Outputs& outputs) {
+void simulate_or_complain(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& states) {
   std::string complaint;
   try {
-    simulate(run, simulation, outputs);
+    simulate(run, simulation, outputs, states);
   } catch (const std::runtime_error& error) {
     complaint = error.what();
   }
@@ -103,7 +113,8 @@ int exit_code_of(const Run& run) {
   return std::any_of(results.begin(), results.end(), fails) ? kExitExpectationFailed : kExitDone;
 }
 
-void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
+void conclude(Run& run, const Simulation& simulation, const Outputs& outputs,
+              const StateFiles& states) {
   RunReport& report = run.report;
   report.time = simulation.time();
   report.statistics = simulation.statistics();
@@ -118,6 +129,8 @@ void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
   report.extremes = outputs.extremes();
   report.expectations = outputs.expectations().results(report.end == RunEnd::kDone);
   report.files = outputs.files();
+  for (WrittenFile& file : states.files())
+    report.files.push_back(std::move(file));
   report.exit_code = exit_code_of(run);
   report.timings.build = report.statistics.build_seconds;
   report.timings.start = report.statistics.start_seconds;
@@ -138,6 +151,7 @@ void show(const Run& run) {
 }
 
 int run_scene(Run& run, Simulation& simulation) {
+  StateFiles states(run.scene, run.options, run.folder, simulation);
   const OutputFolder folder(run.folder);
   run.report.facts = simulation.facts();
   run.report.end_time = simulation.end_time();
@@ -147,8 +161,8 @@ int run_scene(Run& run, Simulation& simulation) {
     run.report.film_device = outputs.drawn_by();
     run.report.files = outputs.files();
     run.write_report();
-    simulate_or_complain(run, simulation, outputs);
-    conclude(run, simulation, outputs);
+    simulate_or_complain(run, simulation, outputs, states);
+    conclude(run, simulation, outputs, states);
   } catch (const std::runtime_error& error) {
     run.report.end = RunEnd::kOutput;
     run.report.failure = error.what();
@@ -208,6 +222,9 @@ int run_command(const Words& words) {
   try {
     const auto simulation = build_simulation(scene);
     return run_scene(run, *simulation);
+  } catch (const StateError& error) {
+    console.error(error.what());
+    return kExitSceneInvalid;
   } catch (const std::invalid_argument& error) {
     console.error(options.path + ": " + error.what());
     return kExitSceneInvalid;
