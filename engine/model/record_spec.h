@@ -20,7 +20,9 @@ struct RecordSpec {
   int vtk_every = 0;  ///< every n-th record; 0: no VTK
 };
 
-enum class ExpectKind { kValue, kBound, kDrift, kConverged };
+enum class ExpectKind { kValue, kBound, kDrift, kMatch, kEvent, kConverged };
+/// Something touches, nothing touches any more, a joint reaches a limit.
+enum class EventKind { kContact, kSeparation, kLimit };
 
 struct Expectation {
   ExpectKind kind = ExpectKind::kConverged;
@@ -30,6 +32,10 @@ struct Expectation {
   double to = -1;              ///< -1: the end
   std::vector<double> equals;  ///< one per channel
   std::optional<double> tolerance, above, below, min, max;
+  std::string reference;                  ///< match: file of a trajectory
+  std::optional<double> rms;              ///< match: beside max, the largest error allowed
+  bool take_lag_out = false;              ///< match: the run may be late
+  EventKind event = EventKind::kContact;  ///< must come about between `from` and `to`
 };
 
 struct ExpectSpec {

@@ -15,6 +15,7 @@
 #include "engine/model/record_spec.h"
 #include "engine/model/rod_spec.h"
 #include "engine/model/solver_spec.h"
+#include "engine/model/sweep_spec.h"
 #include "engine/model/view_spec.h"
 
 namespace cprsim {
@@ -53,6 +54,7 @@ struct Scene {
   std::vector<VideoSpec> videos;
   std::vector<RecordSpec> records;
   std::vector<ExpectSpec> expects;
+  std::vector<SweepSpec> sweeps;
 };
 
 }  // namespace cprsim

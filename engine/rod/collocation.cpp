@@ -20,12 +20,14 @@ constexpr int kLeastNodes = 8;
 
 }  // namespace
 
-CollocationRod::CollocationRod(std::string name, const RodEnd& base, const RodEnd& tip,
+CollocationRod::CollocationRod(std::string name, const EndCondition& base, const EndCondition& tip,
+                               const std::optional<Mat3>& plane, const Pose& X_WBase,
                                const SectionProperties& section, double length,
                                const CollocationOptions& options)
     : name_(std::move(name)), base_(base), tip_(tip), section_(section), options_(options) {
   assert(options.degree >= kLeastDegree && options.degree <= kMaxDegree);
   extensible_ = options.extension || options.shear;
+  choose_space(plane, X_WBase.R);
   place_sites(arc_grid(options.elements, options.stations));
   const auto n = static_cast<Eigen::Index>(points_.size());
   const Eigen::Index strains = options.damping ? n * (extensible_ ? 2 : 1) : 0;
@@ -33,7 +35,24 @@ CollocationRod::CollocationRod(std::string name, const RodEnd& base, const RodEn
   if (options_.rotary_inertia) rotation_track_.resize(3 * n);
   reference_rotations_.assign(points_.size(), Mat3::Identity());
   forcing_.length = length;
-  set_unloaded(Pose{});
+  set_unloaded(X_WBase);
+}
+
+// In a plane: growth of |q|, then MotionSpace's state; the rows that answer for them, of which the
+// curvature law's is about the section's axis along the normal.
+void CollocationRod::choose_space(const std::optional<Mat3>& plane, const Mat3& R_WBase) {
+  space_ = plane ? MotionSpace::in_plane(*plane) : MotionSpace::all();
+  const Eigen::Index d = space_.freedoms();
+  for (VecX* gap : {&tip_gap_, &base_gap_, &tip_gap_start_, &base_gap_start_})
+    gap->setZero(d);
+  increments_ = MatX::Zero(13, 2 * d + 1);
+  increments_(kQ, 0) = 1;
+  increments_.bottomRightCorner(12, 2 * d) = space_.state;
+  rows_ = increments_.transpose();
+  if (!plane) return;
+  const Vec3 normal = R_WBase.transpose() * plane->col(2);
+  normal.cwiseAbs().maxCoeff(&planar_axis_);
+  rows_.block<1, 3>(1, kQ + 1) = normal.transpose();
 }
 
 // Pieces from load to load, their points, and where they are observed.
@@ -182,12 +201,17 @@ void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing)
 void CollocationRod::choose_units() {
   const double L = forcing_.length, EI = section_.K_bt.head<2>().maxCoeff();
   scale_ = {L, EI / (L * L), EI / L};
-  // positions carry round-off eps L; inertia turns it into forces eps k L²
-  constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  noise_ = std::max(1.0, kRoundOff * model_.k * std::pow(L, 4) / (EI * forcing_.tolerance));
   double N = 0;
   for (const CollocationPoint& point : points_)
     N = std::max(N, point.n().norm());
+  for (const PointLoad& load : forcing_.loads)
+    N = std::max(N, load.force.norm());
+  // positions carry round-off eps L, which inertia turns into forces eps k L²; control points of
+  // forces carry eps N, and slopes of splines are up to degree / h
+  constexpr double kEps = std::numeric_limits<double>::epsilon();
+  const double by_inertia = 50 * kEps * model_.k * L * L,
+               by_slopes = 4 * kEps * N * options_.degree * std::sqrt(elements_);
+  noise_ = std::max(1.0, std::max(by_inertia, by_slopes) / (scale_.force * forcing_.tolerance));
   Vec3 K_se = Vec3::Zero();
   for (int i = 0; i < 3; ++i)
     if (model_.C_se[i] > 0) K_se[i] = 1 / model_.C_se[i];
@@ -232,10 +256,10 @@ Vec13 CollocationRod::join_rows(std::size_t piece) const {
   return r;
 }
 
-/// What makes rows dimensionless: those of a point are integrals over its share of the length,
-/// those of a join differences of fields.
+/// What makes rows dimensionless. The squares of a point's rows add up to their mean square along
+/// the rod, whatever the number of points; those of a join are differences of fields.
 Vec13 CollocationRod::point_scale(std::size_t point) const {
-  const double share = weights_[point], L = scale_.length;
+  const double share = std::sqrt(weights_[point]), L = scale_.length;
   Vec13 d;
   d << share * L, Vec3::Constant(share * L / noise_), Vec3::Constant(share / noise_),
       Vec3::Constant(share * L / (scale_.force * noise_)),
@@ -269,44 +293,47 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
       ++row;
     }
   };
-  add(Vec6(base_.value(base_state(), base, loose) - base_gap_));
+  add(VecX(base_.value(base_state(), base, loose) - base_gap_));
   add(Eigen::Matrix<double, 1, 1>(control_.front().head<4>().squaredNorm() - 1));
   residual_.clear();
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
     if (g > 0) {
       residual_.push_back(join_rows(g));
-      add(Vec13(join_scale().cwiseProduct(residual_.back())));
+      add(VecX(rows_ * join_scale().cwiseProduct(residual_.back())));
     }
     for (int i = 0; i < pieces_[g].points; ++i) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
       points_[j].y = value(sites_[j]);
       points_[j].y_s = derivative(sites_[j]);
       residual_.push_back(evaluate_point(model_, points_[j]));
-      add(Vec13(point_scale(j).cwiseProduct(residual_.back())));
+      add(VecX(rows_ * point_scale(j).cwiseProduct(residual_.back())));
     }
   }
-  add(Vec6(tip_.value(tip_state(), tip, loose) - tip_gap_));
+  add(VecX(tip_.value(tip_state(), tip, loose) - tip_gap_));
   section_evaluations_ += static_cast<long>(points_.size());
   return r;
 }
 
 std::string CollocationRod::row_name(int row) const {
-  if (row < 6) return "base of " + name_ + ", " + base_.row_name(row);
-  if (row == 6) return "unit quaternion at the base of " + name_;
-  row -= 7;
+  const int d = static_cast<int>(space_.freedoms());
+  if (row < d) return "base of " + name_ + ", " + base_.row_name(row);
+  if (row == d) return "unit quaternion at the base of " + name_;
+  row -= d + 1;
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
     if (g > 0) {
-      if (row < 13) return "join " + std::to_string(g) + " between pieces of " + name_;
-      row -= 13;
+      if (row < width()) return "join " + std::to_string(g) + " between pieces of " + name_;
+      row -= width();
     }
-    if (row < 13 * pieces_[g].points) {
+    if (row < width() * pieces_[g].points) {
       static const char* const kRows[] = {"unit quaternion", "curvature law", "stretch law",
                                           "force balance", "moment balance"};
-      const auto j = static_cast<std::size_t>(pieces_[g].first_point + row / 13);
-      return std::string(kRows[(row % 13 + 2) / 3]) + " of " + name_ +
+      Eigen::Index at = 0;  // of the 13
+      rows_.row(row % width()).cwiseAbs().maxCoeff(&at);
+      const auto j = static_cast<std::size_t>(pieces_[g].first_point + row / width());
+      return std::string(kRows[(at + 2) / 3]) + " of " + name_ +
              " at s = " + std::to_string(sites_[j].s);
     }
-    row -= 13 * pieces_[g].points;
+    row -= width() * pieces_[g].points;
   }
   return "tip of " + name_ + ", " + tip_.row_name(row);
 }

@@ -12,8 +12,10 @@
 // that integrates to zero.
 //
 // Where a point load acts n, m jump: a knot of multiplicity p + 1 there, with q, p joined by rows.
+// In a plane one turn, two translations and forces and one moment are left: 7 rows a point for 13.
+//
 // Control points are eliminated from the base to the last one (engine/math/banded_elimination.h),
-// whose six combinations that the base leaves free are the z of the two-port.
+// where six unknowns that the base leaves free are the z of the two-port.
 //
 // Increments of a control point turn its quaternion and scale it: a turn of the whole rod by any
 // angle is one exact step for all rotations. A length drive feeds the rod as in
@@ -21,6 +23,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +47,10 @@ struct CollocationOptions {
 
 class CollocationRod final : public RodModel {
  public:
-  CollocationRod(std::string name, const RodEnd& base, const RodEnd& tip,
+  /// @param plane of a planar scene: e1, e2 and the normal as columns, world. @param X_WBase where
+  /// the unloaded rod begins; in a plane its axes may be turned about the tangent.
+  CollocationRod(std::string name, const EndCondition& base, const EndCondition& tip,
+                 const std::optional<Mat3>& plane, const Pose& X_WBase,
                  const SectionProperties& section, double length,
                  const CollocationOptions& options);
 
@@ -92,7 +98,7 @@ class CollocationRod final : public RodModel {
 
   int segments() const override { return static_cast<int>(pieces_.size()); }
 
-  int unknown_count() const override { return 13 * static_cast<int>(control_.size()); }
+  int unknown_count() const override { return columns(); }
 
   long section_evaluations() const override { return section_evaluations_; }
 
@@ -134,13 +140,27 @@ class CollocationRod final : public RodModel {
   void assemble_join(std::size_t piece, int row);
   void put(int row, int control, const Mat13& by_fields);
   void find_band();
+  void choose_space(const std::optional<Mat3>& plane, const Mat3& R_WBase);
   Vec13 increment_units() const;
-  EndColumns base_columns(const NodeState& start) const;
+  MatX base_columns(const NodeState& start) const;
+  Vec13 left_by_plane(const Vec13& by_fields, const Vec4& q) const;
 
   Eigen::Index strain_track() const { return position_coordinates(); }
 
+  /// Unknowns of a control point, and rows of a point.
+  int width() const { return static_cast<int>(rows_.rows()); }
+
+  int columns() const { return width() * static_cast<int>(control_.size()); }
+
+  /// Among the dense columns of the system: after the base body's motion, if that is unknown.
+  int affine() const { return base_moves_ ? width() / 2 : 0; }
+
   std::string name_;
-  RodEnd base_, tip_;
+  EndCondition base_, tip_;
+  MotionSpace space_;
+  MatX rows_;             ///< width × 13: of the 13 rows of a point, those that are not met anyway
+  MatX increments_;       ///< 13 × width: those of a control point's increments that are free
+  int planar_axis_ = -1;  ///< of the section: along the plane's normal
   SectionProperties section_;
   CollocationOptions options_;
   bool extensible_ = false;
@@ -165,8 +185,8 @@ class CollocationRod final : public RodModel {
   // unknowns and what the last evaluation found
   std::vector<Vec13> control_;
   std::vector<CollocationPoint> points_;
-  Vec6 tip_gap_ = Vec6::Zero(), base_gap_ = Vec6::Zero();              ///< left open now
-  Vec6 tip_gap_start_ = Vec6::Zero(), base_gap_start_ = Vec6::Zero();  ///< as captured
+  VecX tip_gap_, base_gap_;              ///< left open now
+  VecX tip_gap_start_, base_gap_start_;  ///< as captured
   std::vector<Vec3> marked_;
 
   // linearisation, direction, remembered unknowns
@@ -174,7 +194,7 @@ class CollocationRod final : public RodModel {
   BandedElimination system_;
   int lower_ = 0, upper_ = 0;  ///< band
   bool base_moves_ = false;
-  EndColumns last_;  ///< of the last control point, in units
+  MatX last_;  ///< the last control point's (phi, dp, dn, dm) = last_ [z; zeta_A; 1], in units
   std::vector<Vec13> direction_, kept_;
 
   Track track_;

@@ -11,9 +11,6 @@
 namespace cprsim {
 namespace {
 
-/// Affine part first, then the base body's motion.
-constexpr int kAffine = 0, kBody = 1;
-
 /// [I; load_by_turn] as it acts on (phi, dp, dn, dm).
 Mat12 passing(const Mat6& load_by_turn) {
   Mat12 P = Mat12::Identity();
@@ -36,28 +33,36 @@ void CollocationRod::put(int row, int control, const Mat13& by_fields) {
   const Vec4 q = control_[static_cast<std::size_t>(control)].head<4>();
   J.leftCols<4>() = (J.leftCols<4>() * quaternion_by_increment(q)).eval();
   J *= increment_units().asDiagonal();
-  for (int r = 0; r < 13; ++r)
-    for (int c = 0; c < 13; ++c)
-      if (J(r, c) != 0) system_.at(row + r, 13 * control + c) += J(r, c);
+  const auto add = [&](const auto& block) {
+    for (int r = 0; r < block.rows(); ++r)
+      for (int c = 0; c < block.cols(); ++c)
+        if (block(r, c) != 0) system_.at(row + r, width() * control + c) += block(r, c);
+  };
+  if (planar_axis_ < 0)
+    add(J);
+  else
+    add(Eigen::Matrix<double, 7, 7>(rows_ * J * increments_));
 }
 
-// Six rows of the joint, and |q|² = 1.
+// The joint's rows, and |q|² = 1.
 void CollocationRod::assemble_base(const Port& base) {
+  const int d = static_cast<int>(space_.freedoms());
   const NodeState start = base_state();
-  const EndRows rows = base_.rows(start, base, scale_);
-  const Mat6x12 J = rows.by_state * passing(load_by_turn(0, Mat3(rotation_of(start)))) *
-                    increment_units().tail<12>().asDiagonal();
-  const Vec6 value = rows.value - base_gap_;
-  for (int r = 0; r < 6; ++r) {
-    for (int c = 0; c < 12; ++c)
+  const ConditionRows rows = base_.rows(start, base, scale_);
+  const MatX J = rows.by_state * passing(load_by_turn(0, Mat3(rotation_of(start)))) *
+                 increment_units().tail<12>().asDiagonal() * space_.state;
+  const MatX by_body = rows.by_body * space_.motion;
+  const VecX value = rows.value - base_gap_;
+  for (int r = 0; r < d; ++r) {
+    for (int c = 0; c < 2 * d; ++c)
       system_.at(r, 1 + c) = J(r, c);
-    system_.dense(r, kAffine) = value[r];
-    for (int c = 0; c < 6 && base_moves_; ++c)
-      system_.dense(r, kBody + c) = rows.by_body(r, c);
+    for (int c = 0; c < d && base_moves_; ++c)
+      system_.dense(r, c) = by_body(r, c);
+    system_.dense(r, affine()) = value[r];
   }
   const double square = control_.front().head<4>().squaredNorm();
-  system_.at(6, 0) = 2 * square;
-  system_.dense(6, kAffine) = square - 1;
+  system_.at(d, 0) = 2 * square;
+  system_.dense(d, affine()) = square - 1;
 }
 
 void CollocationRod::assemble_join(std::size_t piece, int row) {
@@ -72,7 +77,7 @@ void CollocationRod::assemble_join(std::size_t piece, int row) {
 
 void CollocationRod::assemble_points(std::size_t piece, int row) {
   Mat13 by_y, by_y_s;
-  for (int i = 0; i < pieces_[piece].points; ++i, row += 13) {
+  for (int i = 0; i < pieces_[piece].points; ++i, row += width()) {
     const auto j = static_cast<std::size_t>(pieces_[piece].first_point + i);
     linearize_point(model_, points_[j], by_y, by_y_s);
     const BasisValues& b = sites_[j].basis;
@@ -84,19 +89,20 @@ void CollocationRod::assemble_points(std::size_t piece, int row) {
 
 /// How far rows reach to both sides of the diagonal.
 void CollocationRod::find_band() {
+  const int w = width(), first_row = w / 2 + 1;
   lower_ = upper_ = 0;
   const auto reach = [&](int row, int first, int last) {
-    lower_ = std::max(lower_, row + 12 - 13 * first);
-    upper_ = std::max(upper_, 13 * last + 12 - row);
+    lower_ = std::max(lower_, row + w - 1 - w * first);
+    upper_ = std::max(upper_, w * last + w - 1 - row);
   };
-  reach(-6, 0, 0);
-  int row = 7;
+  reach(first_row - w, 0, 0);
+  int row = first_row;
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
     if (g > 0) {
       reach(row, pieces_[g].first_control - 1, pieces_[g].first_control);
-      row += 13;
+      row += w;
     }
-    for (int i = 0; i < pieces_[g].points; ++i, row += 13) {
+    for (int i = 0; i < pieces_[g].points; ++i, row += w) {
       const int first = sites_[static_cast<std::size_t>(pieces_[g].first_point + i)].basis.first;
       reach(row, first, first + options_.degree);
     }
@@ -104,80 +110,82 @@ void CollocationRod::find_band() {
 }
 
 void CollocationRod::assemble(const Port& base) {
-  const int columns = 13 * static_cast<int>(control_.size());
-  system_.reset(columns - 6, columns, lower_, upper_, base_moves_ ? 7 : 1);
+  const int d = static_cast<int>(space_.freedoms());
+  system_.reset(columns() - d, columns(), lower_, upper_, affine() + 1);
   assemble_base(base);
-  int row = 7;
+  int row = d + 1;
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
     if (g > 0) {
       assemble_join(g, row);
-      row += 13;
+      row += width();
     }
     assemble_points(g, row);
-    row += 13 * pieces_[g].points;
+    row += width() * pieces_[g].points;
   }
-  for (std::size_t k = 0; k < residual_.size(); ++k)
-    for (int i = 0; i < 13; ++i)
-      system_.dense(7 + 13 * static_cast<int>(k) + i, kAffine) = residual_[k][i];
+  row = d + 1;
+  for (const Vec13& residual : residual_) {
+    const VecX values = rows_ * residual;
+    for (int i = 0; i < width(); ++i)
+      system_.dense(row++, affine()) = values[i];
+  }
 }
 
-// Six rows B y + B_A zeta_A + b = 0 remain on the last control point's y = (phi, dp, dn, dm) in
-// units: y = Q2 z - Q1 R^-T (B_A zeta_A + b) with B^T = Q1 R.
+// d rows remain on the last control point's 2d unknowns (phi, dp, dn, dm).
 bool CollocationRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  const Eigen::Index d = space_.freedoms();
   base_moves_ = base_.held() && base.moves;
   assemble(base);
   system_.scale_rows();
-  if (!system_.eliminate(13 * static_cast<int>(control_.size()) - 12)) return false;
-  const TallQr qr(Mat12x6(system_.remaining().transpose()));
-  MatX rhs = system_.remaining_dense();
-  const Mat6 lower = qr.R.transpose();
-  lower.triangularView<Eigen::Lower>().solveInPlace(rhs);
-  last_.by_z = qr.Q2;
-  last_.affine = -(qr.Q1 * rhs.col(kAffine));
-  last_.by_A.setZero();
-  if (base_moves_) last_.by_A = -(qr.Q1 * rhs.middleCols<6>(kBody));
+  if (!system_.eliminate(columns() - static_cast<int>(2 * d))) return false;
+  MatX general;
+  if (!general_solution(system_.remaining(), system_.remaining_dense(), general)) return false;
+  last_ = MatX::Zero(2 * d, 2 * d + 1);
+  last_.leftCols(d) = general.leftCols(d);
+  last_.rightCols(affine() + 1) = general.rightCols(affine() + 1);
 
   const NodeState end = tip_state();
-  const Mat12 to_end = passing(-load_by_turn(pieces_.size(), Mat3(rotation_of(end)))) *
-                       increment_units().tail<12>().asDiagonal();
-  const EndColumns Y{to_end * last_.by_z, to_end * last_.by_A, to_end * last_.affine};
-  condense_tip(tip_, end, tip, scale_, tip_gap_, Y, out);
+  const MatX Y = passing(-load_by_turn(pieces_.size(), Mat3(rotation_of(end)))) *
+                 increment_units().tail<12>().asDiagonal() * space_.state * last_;
+  ConditionRows rows = tip_.rows(end, tip, scale_);
+  rows.value -= tip_gap_;
+  condense_tip(space_, rows, tip_.held(), end, tip, Y, out);
+  out.WA_z.setZero();
+  out.WA_A.setZero();
+  out.wa.setZero();
   const NodeState start = base_state();
-  condense_base(base_moves_, start, base, base_moves_ ? base_columns(start) : EndColumns{}, out);
+  if (base_moves_) condense_base(space_, start, base, base_columns(start), out);
   out.growth = 0;
   return true;
 }
 
 /// The state before a load at the base, by back-substitution of all columns.
-EndColumns CollocationRod::base_columns(const NodeState& start) const {
-  MatX last(12, 13), w = MatX::Zero(7, 13);
-  last << last_.by_z, last_.by_A, last_.affine;
-  w.block<6, 6>(kBody, 6).setIdentity();
-  w(kAffine, 12) = 1;
-  const Eigen::Matrix<double, 12, 13> first = passing(load_by_turn(0, Mat3(rotation_of(start)))) *
-                                              increment_units().tail<12>().asDiagonal() *
-                                              system_.substitute(last, w).middleRows(1, 12);
-  return {first.leftCols<6>(), first.middleCols<6>(6), first.col(12)};
+MatX CollocationRod::base_columns(const NodeState& start) const {
+  const Eigen::Index d = space_.freedoms();
+  MatX w = MatX::Zero(d + 1, 2 * d + 1);
+  w.rightCols(d + 1).setIdentity();
+  return passing(load_by_turn(0, Mat3(rotation_of(start)))) *
+         increment_units().tail<12>().asDiagonal() * space_.state *
+         system_.substitute(last_, w).middleRows(1, 2 * d);
 }
 
 Vec6 CollocationRod::wrench_on_base(const Port& base) const {
-  return cprsim::wrench_on_base(base_state(), base);
+  return cprsim::wrench_on_base(space_, base_state(), base);
 }
 
 Vec6 CollocationRod::wrench_on_tip(const Port& tip) const {
-  return cprsim::wrench_on_tip(tip_state(), tip);
+  return cprsim::wrench_on_tip(space_, tip_state(), tip);
 }
 
 void CollocationRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
-  const Vec12 last = last_.by_z * z + last_.by_A * zeta_A + last_.affine;
-  VecX w(base_moves_ ? 7 : 1);
-  w[kAffine] = 1;
-  if (base_moves_) w.tail<6>() = zeta_A;
-  const MatX x = system_.substitute(last, w);
+  const Eigen::Index d = space_.freedoms();
+  VecX all(2 * d + 1);
+  all << z.head(d), zeta_A.head(d), 1;
+  const MatX x = system_.substitute(last_ * all, all.tail(affine() + 1));
   const Vec13 units = increment_units();
   direction_.resize(control_.size());
   for (std::size_t k = 0; k < control_.size(); ++k)
-    direction_[k] = units.cwiseProduct(Vec13(x.block<13, 1>(13 * static_cast<Eigen::Index>(k), 0)));
+    direction_[k] = units.cwiseProduct(
+        Vec13(increments_ * x.middleRows(static_cast<Eigen::Index>(k) * width(), width())));
 }
 
 void CollocationRod::keep() {

@@ -64,7 +64,8 @@ void CollocationRod::bow(const Port& base, const Port& tip) {
     return;
   }
   const double A = std::min(2.2, 2 * std::sqrt(1 - ratio));
-  const int axis = section_.K_bt.x() <= section_.K_bt.y() ? 0 : 1;
+  const int weaker = section_.K_bt.x() <= section_.K_bt.y() ? 0 : 1;
+  const int axis = planar_axis_ < 0 ? weaker : planar_axis_;
   set_shape({R, base.p}, [&](double s) {
     return Vec3(A * std::sin(2 * std::numbers::pi * s) * Vec3::Unit(axis));
   });

@@ -24,6 +24,17 @@ void CollocationRod::set_unknowns(const Unknowns& u) {
     control_[k] = u.values.segment<13>(13 * static_cast<Eigen::Index>(k));
 }
 
+/// What a plane leaves of an increment of the fields (q, p, n, m) at q.
+Vec13 CollocationRod::left_by_plane(const Vec13& by_fields, const Vec4& q) const {
+  Vec13 increment = by_fields;
+  increment[kQ] = q.dot(by_fields.head<4>()) / q.squaredNorm();
+  increment.segment<3>(kQ + 1) = turn_by_quaternion(q) * by_fields.head<4>();
+  increment = (increments_ * (increments_.transpose() * increment)).eval();
+  increment.head<4>() = (quaternion_by_increment(q) * increment.head<4>()).eval();
+  return increment;
+}
+
+// No row holds what leaves a plane: past round-off must not add up there.
 void CollocationRod::predict(const std::vector<const Unknowns*>& past,
                              const std::vector<double>& weights) {
   assert(!past.empty() && past.size() == weights.size());
@@ -31,7 +42,11 @@ void CollocationRod::predict(const std::vector<const Unknowns*>& past,
   sum.values = weights[0] * past[0]->values;
   for (std::size_t i = 1; i < past.size(); ++i)
     sum.values += weights[i] * past[i]->values;
-  set_unknowns(sum);
+  set_unknowns(*past.back());
+  for (std::size_t k = 0; k < control_.size(); ++k) {
+    const Vec13 next = sum.values.segment<13>(13 * static_cast<Eigen::Index>(k));
+    control_[k] += left_by_plane(next - control_[k], Vec4(control_[k].head<4>()));
+  }
   // quaternions add up to another length
   const double length = control_.front().head<4>().norm();
   for (Vec13& control : control_)

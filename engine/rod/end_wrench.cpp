@@ -11,59 +11,62 @@ Vec3 arm_of(const NodeState& end, const Port& port) {
   return position_of(end) - port.p + port.arm;
 }
 
+/// (m + r × n, n), r from the body's reference point to the end: its derivative by the state, ...
+Mat6x12 by_state(const NodeState& end, const Port& port) {
+  Mat6x12 W = Mat6x12::Zero();
+  W.block<3, 3>(0, 3) = -hat(force_of(end));
+  W.block<3, 3>(0, 6) = hat(arm_of(end, port));
+  W.block<3, 3>(0, 9) = W.block<3, 3>(3, 6) = Mat3::Identity();
+  return W;
+}
+
+/// ... and by the body's motion.
+Mat6 by_body(const NodeState& end) {
+  Mat6 W = Mat6::Zero();
+  W.block<3, 3>(0, 3) = hat(force_of(end));
+  return W;
+}
+
 }  // namespace
 
-Vec6 wrench_on_base(const NodeState& start, const Port& base) {
+Vec6 wrench_on_base(const MotionSpace& space, const NodeState& start, const Port& base) {
   Vec6 w;
   w << moment_of(start) + arm_of(start, base).cross(force_of(start)), force_of(start);
-  return w;
+  return space.motion * (space.motion.transpose() * w);
 }
 
-Vec6 wrench_on_tip(const NodeState& end, const Port& tip) {
-  return -wrench_on_base(end, tip);
+Vec6 wrench_on_tip(const MotionSpace& space, const NodeState& end, const Port& tip) {
+  return -wrench_on_base(space, end, tip);
 }
 
-void condense_tip(const RodEnd& rod_end, const NodeState& end, const Port& tip,
-                  const RodScale& scale, const Vec6& gap, const EndColumns& Y, CondensedRod& out) {
-  const EndRows rows = rod_end.rows(end, tip, scale);
-  out.T = rows.by_state * Y.by_z;
-  out.t = rows.value - gap + rows.by_state * Y.affine;
-  out.T_A = rows.by_state * Y.by_A;
-  out.T_B = rows.by_body;
-  out.WB_z.setZero();
-  out.WB_A.setZero();
-  out.WB_B.setZero();
-  out.wb.setZero();
-  if (!rod_end.held()) return;
-  // force -n, moment -(m + r × n), r from the body's reference point to the rod's end
-  const Vec3 n = force_of(end);
-  Mat6x12 W = Mat6x12::Zero();
-  W.block<3, 3>(0, 3) = hat(n);
-  W.block<3, 3>(0, 6) = -hat(arm_of(end, tip));
-  W.block<3, 3>(0, 9) = -Mat3::Identity();
-  W.block<3, 3>(3, 6) = -Mat3::Identity();
-  out.WB_z = W * Y.by_z;
-  out.WB_A = W * Y.by_A;
-  out.WB_B.block<3, 3>(0, 3) = -hat(n);
-  out.wb = wrench_on_tip(end, tip) + W * Y.affine;
+void condense_tip(const MotionSpace& space, const ConditionRows& rows, bool held,
+                  const NodeState& end, const Port& tip, const MatX& Y, CondensedRod& out) {
+  const Eigen::Index d = space.freedoms();
+  const MatX T = rows.by_state * Y;
+  out.T.topLeftCorner(d, d) = T.leftCols(d);
+  out.T_A.topLeftCorner(d, d) = T.middleCols(d, d);
+  out.t.head(d) = rows.value + T.col(2 * d);
+  out.T_B.topLeftCorner(d, d) = rows.by_body * space.motion;
+  MatX W = MatX::Zero(d, 2 * d + 1);
+  out.WB_B.topLeftCorner(d, d).setZero();
+  if (held) {
+    W = -space.motion.transpose() * by_state(end, tip) * Y;
+    W.col(2 * d) += space.motion.transpose() * wrench_on_tip(space, end, tip);
+    out.WB_B.topLeftCorner(d, d) = -space.motion.transpose() * by_body(end) * space.motion;
+  }
+  out.WB_z.topLeftCorner(d, d) = W.leftCols(d);
+  out.WB_A.topLeftCorner(d, d) = W.middleCols(d, d);
+  out.wb.head(d) = W.col(2 * d);
 }
 
-void condense_base(bool moves, const NodeState& start, const Port& base, const EndColumns& Y,
-                   CondensedRod& out) {
-  out.WA_z.setZero();
-  out.WA_A.setZero();
-  out.wa.setZero();
-  if (!moves) return;
-  const Vec3 n = force_of(start);
-  Mat6x12 W = Mat6x12::Zero();
-  W.block<3, 3>(0, 3) = -hat(n);
-  W.block<3, 3>(0, 6) = hat(arm_of(start, base));
-  W.block<3, 3>(0, 9) = Mat3::Identity();
-  W.block<3, 3>(3, 6) = Mat3::Identity();
-  out.WA_z = W * Y.by_z;
-  out.WA_A = W * Y.by_A;
-  out.WA_A.block<3, 3>(0, 3) += hat(n);
-  out.wa = wrench_on_base(start, base) + W * Y.affine;
+void condense_base(const MotionSpace& space, const NodeState& start, const Port& base,
+                   const MatX& Y, CondensedRod& out) {
+  const Eigen::Index d = space.freedoms();
+  const MatX W = space.motion.transpose() * by_state(start, base) * Y;
+  out.WA_z.topLeftCorner(d, d) = W.leftCols(d);
+  out.WA_A.topLeftCorner(d, d) =
+      W.middleCols(d, d) + space.motion.transpose() * by_body(start) * space.motion;
+  out.wa.head(d) = W.col(2 * d) + space.motion.transpose() * wrench_on_base(space, start, base);
 }
 
 }  // namespace cprsim

@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a rod's ends give to its two-port (engine/rod/rod_model.h), whatever is between them.
+// What a rod's ends give to its two-port (engine/rod/rod_model.h), whatever is between them. In a
+// plane only the leading blocks are written. Y (12 × (2d + 1)) says how the state at an end
+// answers: (phi, dp, dn, dm) = Y [z; zeta_A; 1].
 #pragma once
 
+#include "engine/rod/end_condition.h"
 #include "engine/rod/rod_model.h"
 
 namespace cprsim {
 
-using Mat12x6 = Eigen::Matrix<double, 12, 6>;
-
-/// The state at an end (phi, dp, dn, dm) = by_z z + by_A zeta_A + affine.
-struct EndColumns {
-  Mat12x6 by_z = Mat12x6::Zero(), by_A = Mat12x6::Zero();
-  Vec12 affine = Vec12::Zero();
-};
-
 /// Wrench (moment, force) on the body that holds the end, about its reference point.
-Vec6 wrench_on_base(const NodeState& start, const Port& base);
-Vec6 wrench_on_tip(const NodeState& end, const Port& tip);
+Vec6 wrench_on_base(const MotionSpace& space, const NodeState& start, const Port& base);
+Vec6 wrench_on_tip(const MotionSpace& space, const NodeState& end, const Port& tip);
 
-/// (1) and (3): the tip's six rows, and the wrench on its body. @param gap left open in the rows.
-void condense_tip(const RodEnd& rod_end, const NodeState& end, const Port& tip,
-                  const RodScale& scale, const Vec6& gap, const EndColumns& Y, CondensedRod& out);
+/// (1) and (3): the tip's rows, and the wrench on its body if one holds it.
+void condense_tip(const MotionSpace& space, const ConditionRows& rows, bool held,
+                  const NodeState& end, const Port& tip, const MatX& Y, CondensedRod& out);
 
-/// (2): the wrench on the base's body; zero unless `moves`.
-void condense_base(bool moves, const NodeState& start, const Port& base, const EndColumns& Y,
-                   CondensedRod& out);
+/// (2): the wrench on the base's body.
+void condense_base(const MotionSpace& space, const NodeState& start, const Port& base,
+                   const MatX& Y, CondensedRod& out);
 
 }  // namespace cprsim

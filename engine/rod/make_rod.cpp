@@ -111,10 +111,6 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
 
 std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
-  if (plan.plane)
-    throw std::invalid_argument("rod '" + spec.name +
-                                "': collocation knows no planar rods; take shooting, or leave "
-                                "<planar> out");
   CollocationOptions o;
   o.degree = plan.solver->degree.value_or(kDefaultDegree);
   o.elements = plan.solver->elements.value_or(default_elements(
@@ -124,10 +120,14 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
   o.stations = plan.stations;
-  auto model = std::make_unique<CollocationRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
-                                                plan.section, plan.length, o);
-  model->set_unloaded(plan.X_WBase);
-  return model;
+  if (!plan.plane)
+    return std::make_unique<CollocationRod>(spec.name, EndCondition(spec.base),
+                                            EndCondition(spec.tip), plan.plane, plan.X_WBase,
+                                            plan.section, plan.length, o);
+  const EndCondition base(hold_of(plan, spec.base, plan.X_WBase), *plan.plane),
+      tip(hold_of(plan, spec.tip, plan.X_WTip), *plan.plane);
+  return std::make_unique<CollocationRod>(spec.name, base, tip, plan.plane, section_frame(plan),
+                                          plan.section, plan.length, o);
 }
 
 }  // namespace

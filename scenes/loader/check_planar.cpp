@@ -111,11 +111,6 @@ class PlanarCheck {
   }
 
   void check(const RodSpec& rod) {
-    if (rod.method.value_or(scene_.solver.method) == Method::kCollocation)
-      r_.report
-          .at(Severity::kError, "E520", rod.place, 10,
-              "rod '" + rod.name + "' is solved by collocation, which knows no planar rods")
-          .suggestion = "take method=\"shooting\" here, or leave <planar> out";
     if (!rod.rest_curvature.isZero())
       complain(rod.place, 10,
                "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");

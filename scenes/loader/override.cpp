@@ -5,6 +5,7 @@
 
 #include "scenes/loader/reporter.h"
 #include "scenes/loader/schema.h"
+#include "scenes/loader/solver_setting.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
 
@@ -197,6 +198,7 @@ void set_value(Node& world, const std::string& path, const std::string& value, R
   Spot spot = spot_at(world, path);
   const Lookup& lookup = spot.lookup;
   if (!lookup.problem.empty()) {
+    if (is_solver_setting(path)) return set_solver_setting(world, path, std::string(trim(value)));
     explain(report.at(Severity::kError, "E311", {}, 0,
                       "--set " + path + "=" + value + ": " + lookup.problem),
             lookup);
@@ -220,56 +222,19 @@ void set_value(Node& world, const std::string& path, const std::string& value, R
   }
 }
 
-Node& physics_of(Node& world) {
-  for (const auto& child : world.children)
-    if (child->name == "physics" && parse_bool(child->value("default")).value_or(false))
-      return *child;
-  return world.need("physics");
-}
-
-// what the command line asks for holds for every rod
-void forget_methods(Node& node) {
-  if (node.name == "cprsim:rod" || node.name == "cprsim:rod_class")
-    std::erase_if(node.attributes, [](const Attribute& a) { return a.name == "method"; });
-  for (const auto& child : node.children)
-    forget_methods(*child);
-}
-
-void set_text(Node& node, double value) {
-  node.text = format_number(value);
-  node.text_place = {};
-}
-
 }  // namespace
 
 void apply_overrides(Node& world, const LoadOptions& options, Reporter& report) {
   if (options.duration) {
     Node& simulation = world.need("cprsim:simulation");
     if (!simulation.attribute("mode")) simulation.set_attribute("mode", "dynamic");
-    set_text(simulation.need("duration"), *options.duration);
+    Node& duration = simulation.need("duration");
+    duration.text = format_number(*options.duration);
+    duration.text_place = {};
   }
-  if (options.accuracy || options.method || options.step) {
-    Node& solver = physics_of(world).need("cprsim:solver");
-    if (!solver.attribute("method")) solver.set_attribute("method", "auto");
-    if (options.method) {
-      forget_methods(world);
-      solver.set_attribute("method", *options.method);
-    }
-    if (options.accuracy) set_text(solver.need("accuracy"), *options.accuracy);
-    if (options.step) {
-      set_text(physics_of(world).need("max_step_size"), *options.step);
-      for (const auto& child : solver.children)
-        if (child->name == "time") {
-          auto& list = child->attributes;
-          list.erase(std::remove_if(list.begin(), list.end(),
-                                    [](const Attribute& a) {
-                                      return a.name == "step" || a.name == "tolerance";
-                                    }),
-                     list.end());
-          child->set_attribute("step", format_number(*options.step));
-        }
-    }
-  }
+  if (options.method) set_solver_setting(world, "method", *options.method);
+  if (options.accuracy) set_solver_setting(world, "accuracy", format_number(*options.accuracy));
+  if (options.step) set_solver_setting(world, "step", format_number(*options.step));
   for (const auto& [path, value] : options.set)
     set_value(world, path, value, report);
 }
@@ -295,7 +260,7 @@ void check_path(const Node& world, const Attribute& path, const Node& where, Rep
   const auto copy = world.clone();
   copy->parent = nullptr;
   const Lookup lookup = single(*copy, path.value);
-  if (!lookup.problem.empty())
+  if (!lookup.problem.empty() && !is_solver_setting(path.value))
     explain(report.bad_value("E311", where, path, "path '" + path.value + "': " + lookup.problem),
             lookup);
 }

@@ -3,6 +3,7 @@
 //   physics[default]/max_step_size     element names, a name in brackets where several stand beside
 //   each other robot::leg_1/length                entity names robot/leg_1/base/@joint an attribute
 //   robot::base/pose#3                one number of several, counted from 1
+//   scheme                            a setting of the solver, see solver_setting.h
 #pragma once
 
 #include <string>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Videos, records, expectations and sweeps.
+// Videos and records; expectations and sweeps are read in files of their own.
 #include <algorithm>
 
-#include "scenes/loader/override.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/schema.h"
 #include "scenes/loader/suggest.h"
@@ -20,33 +19,6 @@ std::string list_of(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     text += (text.empty() ? "" : ", ") + name;
   return text.empty() ? text : "did you mean " + text + "?";
-}
-
-// channels that `pattern` names; an error if there is none
-std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* attribute) {
-  const std::string& pattern = attribute ? attribute->value : node.text;
-  std::vector<Channel> channels = find_channels(r.scene, pattern);
-  if (!channels.empty()) return channels;
-  const std::string quantity = pattern.substr(std::min(pattern.rfind('.'), pattern.size()));
-  if (quantity == ".tension" || quantity == ".displacement") {
-    r.report.error("E520", node, "channels of tendons are not available in this version");
-    return channels;
-  }
-  if (pattern.substr(0, 8) == "contact(") {
-    r.report.error("E520", node, "channels of single contacts are not available in this version",
-                   "available: contact.count, contact.penetration");
-    return channels;
-  }
-  // of something that is there but could not be read: its own error is enough
-  const std::string entity = pattern.substr(0, pattern.find_first_of(".("));
-  if (r.report.failed() && r.frames.find_outwards(0, entity)) return channels;
-  const std::string message = "there is no channel '" + pattern + "'";
-  const std::string hint = list_of(nearest_channels(r.scene, pattern));
-  if (attribute)
-    r.report.bad_value("E411", node, *attribute, message, hint);
-  else
-    r.report.bad_text("E411", node, message, hint);
-  return channels;
 }
 
 // names of output files stay inside the output folder
@@ -129,81 +101,33 @@ void read_record(Reading& r, const Node& node) {
   r.scene.records.push_back(std::move(record));
 }
 
-void check_value(Reading& r, const Node& node, Expectation& e) {
-  const bool one_sided = e.above || e.below;
-  if (!node.attribute("equals") && !one_sided)
-    r.report.missing("E310", node, "<value> needs equals and tolerance, or above, or below");
-  if (node.attribute("equals") && !e.tolerance)
-    r.report.missing("E310", node, "<value equals> needs a tolerance");
-  if (!e.equals.empty() && !e.channels.empty() && e.equals.size() != e.channels.size())
-    r.report.bad_value("E305", node, *node.attribute("equals"),
-                       "'" + std::string(node.value("of")) + "' has " +
-                           std::to_string(e.channels.size()) + " components, " +
-                           std::to_string(e.equals.size()) + " numbers are given");
-  // a run cut short by hand may end before what the scene expects
-  if (r.options.duration) return;
-  const double end = r.scene.simulation.duration;
-  if (r.scene.simulation.mode != Mode::kStatic && end > 0 && e.at > end * (1 + 1e-9))
-    r.report.bad_value("E306", node, *node.attribute("at"), "the simulation ends before this");
-}
-
-Expectation read_expectation(Reading& r, const Node& node) {
-  Expectation e;
-  e.place = node.place;
-  e.kind = node.name == "value"   ? ExpectKind::kValue
-           : node.name == "bound" ? ExpectKind::kBound
-           : node.name == "drift" ? ExpectKind::kDrift
-                                  : ExpectKind::kConverged;
-  if (const Attribute* of = node.attribute("of")) e.channels = channels_of(r, node, of);
-  e.at = number_attribute(node, "at", 0);
-  e.from = number_attribute(node, "from", 0);
-  e.to = number_attribute(node, "to", -1);
-  e.equals = parse_numbers(node.value("equals")).value_or(std::vector<double>{});
-  e.tolerance = optional_number(node, "tolerance");
-  e.above = optional_number(node, "above");
-  e.below = optional_number(node, "below");
-  e.min = optional_number(node, "min");
-  e.max = optional_number(node, "max");
-  if (e.kind == ExpectKind::kValue) check_value(r, node, e);
-  if (e.kind == ExpectKind::kBound && !e.min && !e.max)
-    r.report.missing("E310", node, "<bound> needs min or max");
-  if (e.min && e.max && *e.min > *e.max)
-    r.report.error("E306", node, "min lies above max: nothing can fulfil this");
-  if (e.kind == ExpectKind::kDrift && !e.below)
-    r.report.missing("E308", node, "<drift> has no attribute below");
-  return e;
-}
-
-void read_expect(Reading& r, const Node& node) {
-  ExpectSpec expect;
-  expect.name = node.value("name");
-  expect.place = node.place;
-  for (const auto& child : node.children) {
-    if (child->broken) continue;
-    if (child->name == "fails") {
-      r.expected_failure = child->value("with");
-      if (explain_code(r.expected_failure).empty())
-        r.report.bad_value("E307", *child, *child->attribute("with"),
-                           "'" + r.expected_failure + "' is no code");
-    } else {
-      expect.all.push_back(read_expectation(r, *child));
-    }
-  }
-  r.scene.expects.push_back(std::move(expect));
-}
-
-void read_sweep(Reading& r, const Node& node, const Node& world) {
-  for (const Node* vary : node.all("vary"))
-    check_path(world, *vary->attribute("path"), *vary, r.report);
-  for (const Node* measure : node.all("measure"))
-    channels_of(r, *measure, measure->attribute("of"));
-  r.report.note("W592", node,
-                describe(node) +
-                    " is not carried out by a run: cprsim sweep is not "
-                    "in this version");
-}
-
 }  // namespace
+
+std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* attribute) {
+  const std::string& pattern = attribute ? attribute->value : node.text;
+  std::vector<Channel> channels = find_channels(r.scene, pattern);
+  if (!channels.empty()) return channels;
+  const std::string quantity = pattern.substr(std::min(pattern.rfind('.'), pattern.size()));
+  if (quantity == ".tension" || quantity == ".displacement") {
+    r.report.error("E520", node, "channels of tendons are not available in this version");
+    return channels;
+  }
+  if (pattern.substr(0, 8) == "contact(") {
+    r.report.error("E520", node, "channels of single contacts are not available in this version",
+                   "available: contact.count, contact.penetration");
+    return channels;
+  }
+  // of something that is there but could not be read: its own error is enough
+  const std::string entity = pattern.substr(0, pattern.find_first_of(".("));
+  if (r.report.failed() && r.frames.find_outwards(0, entity)) return channels;
+  const std::string message = "there is no channel '" + pattern + "'";
+  const std::string hint = list_of(nearest_channels(r.scene, pattern));
+  if (attribute)
+    r.report.bad_value("E411", node, *attribute, message, hint);
+  else
+    r.report.bad_text("E411", node, message, hint);
+  return channels;
+}
 
 void read_outputs(Reading& r, const Node& world) {
   for (const Node* node : world.all("cprsim:video"))

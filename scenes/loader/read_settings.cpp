@@ -133,6 +133,12 @@ void read_time(Reading& r, const Node& node) {
   solver.rho_inf = optional_number(node, "rho_inf");
   solver.step = optional_number(node, "step");
   solver.tolerance = optional_number(node, "tolerance");
+  const bool adapts = solver.scheme == SchemeKind::kTrBdf2 ||
+                      solver.scheme == SchemeKind::kEsdirk32 ||
+                      solver.scheme == SchemeKind::kEsdirk43;
+  if (solver.tolerance && solver.scheme && !adapts)
+    r.report.bad_value("E310", node, *node.attribute("tolerance"),
+                       std::string(node.value("scheme")) + " takes fixed steps: give step");
   if (solver.step && solver.tolerance)
     r.report.error("E310", node, "step fixes the time step, tolerance adapts it: give one of them");
 }

@@ -48,8 +48,13 @@ void read_actions(Reading& reading, const Node& world);  // drives, loads, initi
 void read_targets(Reading& reading);                      // after the drives
 void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings
 void read_outputs(Reading& reading, const Node& world);  // videos, records, expectations, sweeps
+void read_expect(Reading& reading, const Node& node);
+void read_sweep(Reading& reading, const Node& node, const Node& world);
 void check_physics(Reading& reading);                    // what only the whole scene can tell
 void check_planar(Reading& reading, const Node& world);  // that nothing leaves the plane
+
+/// Channels that an attribute (none: the element's text) names; an error if there is none.
+std::vector<Channel> channels_of(Reading& reading, const Node& node, const Attribute* attribute);
 
 /// Summed shapes of time that are children of `node`.
 Profile read_shapes(Reading& reading, const Node& node);

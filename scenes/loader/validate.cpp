@@ -302,7 +302,7 @@ class Validator {
     }
     const bool may_be_empty = rule.type == ValueType::kPose ||
                               (rule.type == ValueType::kVec3 && node.attribute("frame")) ||
-                              node.name == "overlay";
+                              node.name == "overlay" || node.name == "vary";
     if (node.text.empty() && may_be_empty) return;
     Verdict verdict = check_value(node.text, rule.type);
     if (!verdict.code && node.text.empty()) verdict = wrong_type("", rule.type);

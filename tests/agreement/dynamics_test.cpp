@@ -38,6 +38,7 @@ TEST_P(EveryMethodMoving, ReleasesARod) {
   shooting.solver.points = 16;
   scene.solver.method = GetParam();
   scene.solver.order = 10;
+  scene.solver.degree = 8;
   const Snapshot found = end_of(scene), expected = end_of(shooting);
   EXPECT_LT((tip_of(found) - tip_of(expected)).norm(), 4e-7);  // 1e-6 L
   EXPECT_NEAR(found.energy.kinetic + found.energy.elastic,

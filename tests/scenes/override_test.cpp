@@ -25,6 +25,40 @@ TEST(Overrides, ReachElementsEntitiesAndAttributes) {
   EXPECT_EQ(with("robot::leg/tip/@joint", "ball").scene->rods[0].tip.joint, EndJoint::kBall);
 }
 
+LoadResult with_all(const std::vector<std::pair<std::string, std::string>>& set) {
+  LoadOptions options;
+  options.set = set;
+  return load_text(scene_text(), options);
+}
+
+TEST(Overrides, ReachSettingsOfTheSolverByOneWord) {
+  const LoadResult adaptive = with_all({{"scheme", "esdirk43"}, {"tolerance", "1e-6"}});
+  ASSERT_TRUE(adaptive.scene) << to_text(adaptive.diagnostics);
+  EXPECT_EQ(adaptive.scene->solver.scheme, SchemeKind::kEsdirk43);
+  EXPECT_EQ(adaptive.scene->solver.tolerance, 1e-6);
+  // a step replaces the tolerance, another scheme the parameters of the first
+  const LoadResult fixed = with_all({{"scheme", "bdf_alpha"},
+                                     {"alpha", "-0.2"},
+                                     {"tolerance", "1e-6"},
+                                     {"step", "0.002"},
+                                     {"scheme", "bdf2"},
+                                     {"points", "12"},
+                                     {"residual", "1e-11"}});
+  ASSERT_TRUE(fixed.scene) << to_text(fixed.diagnostics);
+  EXPECT_EQ(fixed.scene->solver.step, 0.002);
+  EXPECT_FALSE(fixed.scene->solver.tolerance);
+  EXPECT_FALSE(fixed.scene->solver.alpha);
+  EXPECT_EQ(fixed.scene->solver.points, 12);
+  EXPECT_EQ(fixed.scene->solver.residual_tolerance, 1e-11);
+  // an accuracy leaves resolution and steps to the program
+  const LoadResult asked =
+      with_all({{"points", "12"}, {"tolerance", "1e-6"}, {"accuracy", "1e-4"}});
+  EXPECT_EQ(asked.scene->solver.accuracy, 1e-4);
+  EXPECT_FALSE(asked.scene->solver.points || asked.scene->solver.tolerance);
+  EXPECT_EQ(error_codes(with("scheme", "bdf7")), std::vector<std::string>{"E307"});
+  EXPECT_EQ(error_codes(with("schem", "bdf2")), std::vector<std::string>{"E311"});
+}
+
 TEST(Overrides, ReachOneNumberOfSeveral) {
   const LoadResult result = with("robot::plate/pose#3", "0.45");
   ASSERT_TRUE(result.scene) << to_text(result.diagnostics);

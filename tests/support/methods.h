@@ -9,7 +9,7 @@
 
 namespace cprsim {
 
-inline constexpr Method kEveryMethod[] = {Method::kShooting, Method::kStrain};
+inline constexpr Method kEveryMethod[] = {Method::kShooting, Method::kStrain, Method::kCollocation};
 
 inline std::string name_of(Method method) {
   switch (method) {
@@ -33,6 +33,10 @@ inline Scene finely(Scene scene, Method method) {
   if (method == Method::kStrain) {
     scene.solver.order = 8;
     scene.solver.elements = 2;
+  }
+  if (method == Method::kCollocation) {
+    scene.solver.degree = 8;
+    scene.solver.elements = 24;
   }
   return scene;
 }

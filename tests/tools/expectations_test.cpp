@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/tools/scratch_folder.h"
 #include "tests/tools/synthetic.h"
 
 namespace cprsim {
@@ -128,6 +129,76 @@ TEST(Expectations, AreNotMetAsAWholeIfOneCheckIsNot) {
   play(expectations);
   EXPECT_EQ(expectations.results(true)[0].verdict, Verdict::kMet);
   EXPECT_EQ(expectations.results(false)[0].verdict, Verdict::kNotMet);
+}
+
+/// A match of the synthetic height with a file; `error` is put into the file's third row.
+CheckResult match_check(double error, double limit, bool rms, double end = 0.4) {
+  const ScratchFolder folder;
+  std::string text = "time [s],ball.position.z [mm]\n";
+  for (int k = 0; k <= 8; ++k) {
+    const double t = 0.05 * k, z = height_at(t) + (k == 2 ? error : 0);
+    text += std::to_string(t) + "," + std::to_string(1000 * z) + "\n";
+  }
+  spill(folder / "measured.csv", text);
+  Expectation expected = expectation(ExpectKind::kMatch, height());
+  expected.reference = (folder / "measured.csv").string();
+  (rms ? expected.rms : expected.max) = limit;
+  return check(expected, end);
+}
+
+TEST(Expectations, MatchATrajectoryAtItsInstantsWithinSteps) {
+  // to_string keeps six digits after the point
+  EXPECT_EQ(match_check(0, 1e-6, false).verdict, Verdict::kMet);
+  const CheckResult off = match_check(0.03, 0.02, false);
+  EXPECT_EQ(off.verdict, Verdict::kNotMet);
+  EXPECT_NEAR(off.value, 0.03, 1e-6);
+  EXPECT_NEAR(off.time, 0.1, 1e-12);
+  EXPECT_EQ(match_check(0.03, 0.011, true).verdict, Verdict::kMet);  // 0.03 / 3
+  EXPECT_EQ(match_check(0.03, 0.009, true).verdict, Verdict::kNotMet);
+  EXPECT_EQ(match_check(0, 1e-6, false, 0.2).verdict, Verdict::kNotReached);
+  EXPECT_EQ(match_check(0.03, 0.02, false, 0.2).verdict, Verdict::kNotMet);
+}
+
+/// Touches something from 0.12 s to 0.24 s, in steps of 0.04 s.
+CheckResult event_check(EventKind kind, double from, double to) {
+  Channel contacts = height();
+  contacts.name = "contact.count";
+  contacts.entity = ChannelEntity::kContact;
+  contacts.quantity = Quantity::kContactCount;
+  Expectation expected = expectation(ExpectKind::kEvent, contacts);
+  expected.event = kind;
+  expected.from = from;
+  expected.to = to;
+  Scene scene = synthetic_scene();
+  scene.expects.push_back({"it", {}, {expected}});
+  Expectations expectations(scene);
+  Snapshot before = synthetic_state(0);
+  expectations.begin(before);
+  for (int k = 1; k <= 10; ++k) {
+    Snapshot now = synthetic_state(0.04 * k);
+    now.contact.count = k >= 3 && k <= 6 ? 2 : 0;
+    expectations.step(before, now);
+    before = now;
+  }
+  return expectations.results(true).at(0).checks.at(0);
+}
+
+TEST(Expectations, EventsComeAboutWithinTheirTimes) {
+  EXPECT_EQ(event_check(EventKind::kContact, 0, -1).verdict, Verdict::kMet);
+  EXPECT_NEAR(event_check(EventKind::kContact, 0, -1).time, 0.12, 1e-12);
+  EXPECT_EQ(event_check(EventKind::kContact, 0.1, 0.2).verdict, Verdict::kMet);
+  EXPECT_EQ(event_check(EventKind::kContact, 0, 0.1).verdict, Verdict::kNotMet);
+  EXPECT_EQ(event_check(EventKind::kContact, 0.2, 0.4).verdict, Verdict::kNotMet);
+  EXPECT_NEAR(event_check(EventKind::kSeparation, 0, -1).time, 0.28, 1e-12);
+  EXPECT_EQ(event_check(EventKind::kSeparation, 0, 0.2).verdict, Verdict::kNotMet);
+}
+
+TEST(Expectations, EventsThatNeverComeAboutAreNotMet) {
+  Expectation expected = expectation(ExpectKind::kEvent, height());
+  expected.channels[0].quantity = Quantity::kContactCount;
+  expected.channels[0].entity = ChannelEntity::kContact;
+  EXPECT_EQ(check(expected).verdict, Verdict::kNotMet);
+  EXPECT_EQ(check(expected, 0.2).verdict, Verdict::kNotReached);
 }
 
 }  // namespace

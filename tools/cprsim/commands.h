@@ -14,6 +14,10 @@ int modes_command(const Words& words);     ///< natural frequencies
 int identify_command(const Words& words);  ///< values of a scene from measurements
 int path_command(const Words& words);      ///< equilibria through folds and branch points
 int compare_command(const Words& words);   ///< a run against a reference trajectory
+int test_command(const Words& words);      ///< scenes as tests
+int sweep_command(const Words& words);     ///< what accuracy costs in time
+int effects_command(const Words& words);   ///< what each effect changes and costs
+int plot_command(const Words& words);      ///< recordings as pictures
 int explain_command(const Words& words);   ///< the meaning of a code
 int doctor_command(const Words& words);    ///< what this machine can do
 

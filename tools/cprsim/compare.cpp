@@ -11,6 +11,7 @@
 #include "tools/cprsim/compare_report.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/output_folder.h"
+#include "tools/series/pairing.h"
 #include "tools/series/read_series.h"
 #include "tools/sinks/output_file.h"
 
@@ -56,44 +57,6 @@ void rename(Series& reference, const CompareOptions& options) {
   }
 }
 
-/// The run's quantity that a quantity of the reference is: of the same name, or the only one that
-/// ends like it.
-const SeriesQuantity* counterpart(const std::vector<SeriesQuantity>& all,
-                                  const SeriesQuantity& reference) {
-  const SeriesQuantity* found = nullptr;
-  for (const SeriesQuantity& q : all) {
-    if (q.name == reference.name && q.kind == reference.kind) return &q;
-    if (!q.name.ends_with("." + reference.name) || q.kind != reference.kind) continue;
-    if (found != nullptr) {
-      throw UsageError(fmt::format("'{}' of the reference fits {} and {}: say which by --map",
-                                   reference.name, found->name, q.name));
-    }
-    found = &q;
-  }
-  return found;
-}
-
-/// Columns that name no unit are taken as --ref-units says, or as SI; ones that name another kind
-/// of unit than the run are refused.
-void convert_units(Series& reference, const QuantityPair& pair, const Series& run,
-                   const CompareOptions& options) {
-  for (std::size_t i = 0; i < pair.quantity.width(); ++i) {
-    SeriesColumn& column = reference.columns[pair.reference.columns[i]];
-    const std::string& wanted = run.columns[pair.quantity.columns[i]].unit;
-    if (column.unit.empty() && !wanted.empty()) {
-      for (const std::string& unit : options.reference_units)
-        if (si_unit(unit)->name == wanted)
-          for (double& value : column.values)
-            value *= si_unit(unit)->factor;
-      column.unit = wanted;
-    }
-    if (!wanted.empty() && column.unit != wanted) {
-      throw UsageError(fmt::format("{}: '{}' is in {}, the run's {} in {}", reference.path,
-                                   column.name, column.unit, pair.quantity.name, wanted));
-    }
-  }
-}
-
 std::vector<QuantityPair> pair_up(const Series& run, Series& reference,
                                   const CompareOptions& options, CompareReport& report) {
   const std::vector<SeriesQuantity> ours = quantities_of(run);
@@ -108,7 +71,7 @@ std::vector<QuantityPair> pair_up(const Series& run, Series& reference,
                                                        our->name) != options.of.end();
     if (!asked) continue;
     pairs.push_back({*our, theirs});
-    convert_units(reference, pairs.back(), run, options);
+    convert_units(reference, pairs.back(), run, options.reference_units);
   }
   if (!pairs.empty()) return pairs;
   std::vector<std::string> names, their_names;
@@ -244,6 +207,9 @@ int compare_command(const Words& words) {
     console.error("the run is farther from the reference than allowed");
     return kExitExpectationFailed;
   } catch (const UsageError& error) {
+    console.error(error.what());
+    return kExitUsage;
+  } catch (const PairingError& error) {
     console.error(error.what());
     return kExitUsage;
   } catch (const TableError& error) {

@@ -28,6 +28,10 @@ const char* kind_name(ExpectKind kind) {
       return "bound";
     case ExpectKind::kDrift:
       return "drift";
+    case ExpectKind::kMatch:
+      return "match";
+    case ExpectKind::kEvent:
+      return "event";
     case ExpectKind::kConverged:
       return "converged";
   }
@@ -59,6 +63,41 @@ Limit tightest_limit(const Expectation& expected, std::size_t channel, double va
   return limit;
 }
 
+const char* event_name(EventKind kind) {
+  switch (kind) {
+    case EventKind::kContact:
+      return "contact";
+    case EventKind::kSeparation:
+      return "separation";
+    case EventKind::kLimit:
+      return "limit";
+  }
+  return "";
+}
+
+/// "contact between 0.1 s and 0.6 s"
+std::string event_text(const Expectation& expected, double end) {
+  const double before = expected.to < 0 ? end : expected.to;
+  return std::string(event_name(expected.event)) + " between " + shortest(expected.from) +
+         " s and " + shortest(before) + " s";
+}
+
+/// Of RMS and maximum the one that is broken most, in terms of its limit.
+void hold_against(const Expectation& expected, const QuantityComparison& comparison,
+                  CheckResult& result) {
+  const ErrorNumbers& n = comparison.numbers;
+  const double over_rms = expected.rms ? n.rms / *expected.rms : 0;
+  const double over_max = expected.max ? n.max / *expected.max : 0;
+  const bool by_rms = over_rms > over_max;
+  result.value = by_rms ? n.rms : n.max;
+  result.time = n.max_time;
+  result.limit = (by_rms ? "RMS error at most " + shortest(*expected.rms)
+                         : "error at most " + shortest(*expected.max)) +
+                 " over " + std::to_string(comparison.time.size()) + " instants";
+  const bool kept = std::max(over_rms, over_max) <= 1;  // not a number is never kept
+  result.verdict = kept ? Verdict::kMet : Verdict::kNotMet;
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -81,6 +120,7 @@ Expectations::Watch::Watch(const Scene& scene, const Expectation& what)
       })) {
   at_worst.kind = kind_name(what.kind);
   at_worst.place = what.place;
+  if (what.kind == ExpectKind::kMatch) match.emplace(scene, what);
 }
 
 Expectations::Expectations(const Scene& scene) : scene_(scene) {
@@ -108,12 +148,20 @@ void Expectations::step(const Snapshot& before, const Snapshot& now) {
   }
 }
 
+void Expectations::resume(const Snapshot& now) {
+  for (std::vector<Watch>& watches : watches_)
+    for (Watch& watch : watches)
+      if (watch.match) watch.match->begin(now);
+}
+
 void Expectations::visit(Archive& archive) {
   constexpr std::size_t kMostChannels = 100'000;
   for (std::vector<Watch>& watches : watches_)
     for (Watch& watch : watches) {
       watch.reader.visit(archive);
-      archive(watch.reached_end);
+      for (bool* x : {&watch.reached_end, &watch.touched, &watch.happened})
+        archive(*x);
+      if (watch.match) watch.match->visit(archive);
       watch.first.resize(archive.count(watch.first.size(), kMostChannels));
       archive.doubles(watch.first);
       archive(watch.worst);
@@ -124,9 +172,50 @@ void Expectations::visit(Archive& archive) {
     }
 }
 
+double Expectations::end() const {
+  return scene_.simulation.mode == Mode::kStatic ? 0 : scene_.simulation.duration;
+}
+
 void Expectations::follow(Watch& watch, const Snapshot& before, const Snapshot& now) const {
+  switch (watch.expected.kind) {
+    case ExpectKind::kConverged:
+      return;
+    case ExpectKind::kMatch:
+      if (&before == &now)
+        watch.match->begin(now);
+      else
+        watch.match->step(before, now);
+      watch.reached_end = now.time >= watch.match->last_instant() - kRoundOff * now.time;
+      return;
+    case ExpectKind::kEvent:
+      return follow_event(watch, now);
+    default:
+      return follow_value(watch, before, now);
+  }
+}
+
+void Expectations::follow_event(Watch& watch, const Snapshot& now) const {
   const Expectation& expected = watch.expected;
-  if (expected.kind == ExpectKind::kConverged) return;
+  const double to = expected.to < 0 ? end() : expected.to;
+  watch.reached_end = now.time >= to * (1 - kRoundOff);
+  if (watch.happened) return;
+  const std::vector<double>& values = watch.reader.read(now);
+  const auto acts =
+      std::find_if(values.begin(), values.end(), [](double value) { return value != 0; });
+  const bool touches = acts != values.end();
+  watch.happened = expected.event == EventKind::kSeparation ? watch.touched && !touches : touches;
+  watch.touched = watch.touched || touches;
+  if (!watch.happened) return;
+  const auto index = touches ? static_cast<std::size_t>(acts - values.begin()) : 0;
+  watch.at_worst.channel = expected.channels[index].name;
+  watch.at_worst.value = values[index];
+  watch.at_worst.time = now.time;
+  watch.at_worst.limit = event_text(expected, end());
+  watch.worst = now.time < expected.from || now.time > to ? 1 : 0;
+}
+
+void Expectations::follow_value(Watch& watch, const Snapshot& before, const Snapshot& now) const {
+  const Expectation& expected = watch.expected;
   const bool start = &before == &now;
   const double slack = kRoundOff * (now.time - before.time);
   const auto passes = [&](double t) {
@@ -139,8 +228,7 @@ void Expectations::follow(Watch& watch, const Snapshot& before, const Snapshot& 
     watch.reached_end = true;
     return;
   }
-  const double end = scene_.simulation.mode == Mode::kStatic ? 0 : scene_.simulation.duration;
-  const double to = expected.to < 0 ? end : expected.to;
+  const double to = expected.to < 0 ? end() : expected.to;
   if (to < expected.from) return;  // --duration ends the run before
   if (!watch.of_steps && passes(expected.from))
     look(watch, interpolate(before, now, expected.from));
@@ -171,12 +259,29 @@ void Expectations::look(Watch& watch, const Snapshot& snapshot) const {
 
 CheckResult Expectations::result_of(const Watch& watch, bool converged) const {
   CheckResult result = watch.at_worst;
+  const Expectation& expected = watch.expected;
+  if (expected.kind == ExpectKind::kMatch) {
+    result.channel = expected.channels.front().name;
+    if (expected.channels.size() > 1) result.channel.resize(result.channel.rfind('.'));
+    const auto comparison = watch.match->compare();
+    if (comparison) hold_against(expected, *comparison, result);
+    // what is broken is broken, however much was left to come
+    if (!watch.reached_end && result.verdict == Verdict::kMet)
+      result.verdict = Verdict::kNotReached;
+    return result;
+  }
+  if (expected.kind == ExpectKind::kEvent && !watch.happened) {
+    result.verdict = watch.reached_end ? Verdict::kNotMet : Verdict::kNotReached;
+    result.limit = event_text(expected, end());
+    return result;
+  }
   if (watch.expected.kind == ExpectKind::kConverged) {
     result.verdict = converged ? Verdict::kMet : Verdict::kNotMet;
   } else if (watch.worst > 0) {
     result.verdict = Verdict::kNotMet;
   } else {
-    result.verdict = watch.reached_end ? Verdict::kMet : Verdict::kNotReached;
+    const bool seen = watch.reached_end || watch.happened;
+    result.verdict = seen ? Verdict::kMet : Verdict::kNotReached;
   }
   return result;
 }

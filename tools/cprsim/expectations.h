@@ -8,6 +8,7 @@
 
 #include "engine/model/scene.h"
 #include "engine/run/observe.h"
+#include "tools/cprsim/trajectory_match.h"
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
@@ -22,7 +23,7 @@ const char* to_string(Verdict verdict);
 
 /// One line of an <cprsim:expect>: the value that came nearest to breaking it, or broke it most.
 struct CheckResult {
-  std::string kind;  ///< value, bound, drift, converged
+  std::string kind;  ///< value, bound, drift, match, event, converged
   Verdict verdict = Verdict::kNotReached;
   Place place;
   std::string channel;  ///< empty for converged
@@ -38,11 +39,12 @@ struct ExpectResult {
 
 class Expectations : public Sink {
  public:
+  /// @throws TableError, PairingError for what a <match> names
   explicit Expectations(const Scene& scene);
 
   void begin(const Snapshot& start) override;
 
-  void resume(const Snapshot&) override {}
+  void resume(const Snapshot& now) override;
 
   void step(const Snapshot& before, const Snapshot& now) override;
   void visit(Archive& archive) override;
@@ -63,6 +65,8 @@ class Expectations : public Sink {
     ChannelReader reader;
     bool of_steps = false;  ///< solver channels describe a step: not interpolated
     bool reached_end = false;
+    std::optional<TrajectoryMatch> match;
+    bool touched = false, happened = false;                   ///< event
     std::vector<double> first;                                ///< drift: the values at `from`
     double worst = -std::numeric_limits<double>::infinity();  ///< violation, > 0 is one
     CheckResult at_worst;
@@ -70,7 +74,10 @@ class Expectations : public Sink {
 
   void look(Watch& watch, const Snapshot& snapshot) const;
   void follow(Watch& watch, const Snapshot& before, const Snapshot& now) const;
+  void follow_value(Watch& watch, const Snapshot& before, const Snapshot& now) const;
+  void follow_event(Watch& watch, const Snapshot& now) const;
   CheckResult result_of(const Watch& watch, bool converged) const;
+  double end() const;
 
   const Scene& scene_;
   std::vector<std::vector<Watch>> watches_;  ///< as Scene::expects

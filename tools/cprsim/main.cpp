@@ -25,24 +25,24 @@ constexpr std::string_view kHelp =
 Examples
   cprsim scene.xml                          run it: record, film, check as the scene says
   cprsim run scene.xml --duration 1 --with shear -o try
-  cprsim scene.xml --without damping --still shot.png@0.5
   cprsim check scenes/robots/*.xml          only validate
+  cprsim test scenes                        run what they expect
   cprsim info scene.xml                     stiffness, frequencies, effects and their advisor
   cprsim solve scene.xml --pose robot::platform=0,0,0.4,0,10deg,0
   cprsim identify scene.xml tips.csv --fit rod/material/youngs_modulus
   cprsim workspace scene.xml --random 1000  what drives reach: stable, within limits
   cprsim compare out/planar measured.csv    RMS, maximum, lag, a picture
+  cprsim sweep scene.xml                    what accuracy costs in time
 
 Usage  cprsim [run] SCENE [options]
        cprsim COMMAND [options]
 
 Commands
-  run check info           simulate, verify, look into a scene
-  solve modes              equilibria, inverse problems, stability, natural frequencies
-  path                     equilibria through folds and branch points
-  identify                 fit values of a scene to measurements
-  workspace                what a robot reaches: a sweep of drives or poses
-  compare                  a run against a reference trajectory
+  run check info test      simulate, verify, look into a scene; scenes as tests
+  solve modes path         equilibria, stability, natural frequencies, folds and branches
+  identify workspace       fit values to measurements; what a robot reaches
+  sweep effects            what accuracy and what each effect costs in time
+  compare plot             a run against a reference trajectory; pictures
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -72,6 +72,10 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"workspace", workspace_command},
                                Command{"identify", identify_command},
                                Command{"compare", compare_command},
+                               Command{"test", test_command},
+                               Command{"sweep", sweep_command},
+                               Command{"effects", effects_command},
+                               Command{"plot", plot_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};
 

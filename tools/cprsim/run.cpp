@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "engine/math/state_text.h"
+#include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/commands.h"
 #include "tools/cprsim/exit_code.h"
@@ -35,6 +36,7 @@ struct Run {
   std::filesystem::path folder;
   Stopwatch watch;
   RunReport report;
+  PositionTrack* track = nullptr;  ///< if an accuracy is asked for
 
   void write_report() const { write_file(folder / "run.json", to_json(scene, report)); }
 };
@@ -58,17 +60,20 @@ void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& st
   if (simulation.status() != RunStatus::kFailed) {
     const std::string warning = states.start(outputs, simulation);
     if (!warning.empty()) run.console.warn(warning);
+    if (run.track != nullptr) run.track->begin(simulation.now());
   }
   while (simulation.status() == RunStatus::kRunning && !must_stop(run)) {
     simulation.advance();
     if (simulation.status() == RunStatus::kFailed) break;
     outputs.step(simulation.before(), simulation.now());
-    states.step(simulation, outputs);
+    if (run.track != nullptr) run.track->step(simulation.before(), simulation.now());
+    if (run.track == nullptr) states.step(simulation, outputs);
     progress.update(simulation.time(), simulation.statistics().steps,
                     simulation.statistics().iterations);
   }
   progress.finish();
   if (simulation.status() == RunStatus::kDone) run.report.end = RunEnd::kDone;
+  if (run.track != nullptr) return;  // its error is judged over the whole of a run
   if (run.report.end == RunEnd::kInterrupted || run.report.end == RunEnd::kWallTime)
     states.write("checkpoint.state", simulation, outputs);
   if (simulation.status() == RunStatus::kFailed && simulation.statistics().steps > 0)
@@ -150,7 +155,7 @@ void show(const Run& run) {
   run.console.error(explain_failure(report, run.folder.string()));
 }
 
-int run_scene(Run& run, Simulation& simulation) {
+void run_scene(Run& run, Simulation& simulation) {
   StateFiles states(run.scene, run.options, run.folder, simulation);
   const OutputFolder folder(run.folder);
   run.report.facts = simulation.facts();
@@ -168,8 +173,27 @@ int run_scene(Run& run, Simulation& simulation) {
     run.report.failure = error.what();
     run.report.exit_code = kExitEnvironment;
   }
+}
+
+/// Runs once, or, where an accuracy is asked for, until the error found out is small enough.
+int run_to_accuracy(Run& run) {
+  AccuracyControl control(run.scene);
+  if (control.asked() && !run.options.from.empty())
+    throw StateError("a run that is held to an <accuracy> cannot go on from a state");
+  if (control.asked()) control.fly_pilot([&] { return must_stop(run); });
+  for (bool again = true; again;) {
+    const auto simulation = build_simulation(control.scene());
+    if (control.asked()) run.track = &control.track();
+    run_scene(run, *simulation);
+    const bool judge = control.asked() && run.report.end == RunEnd::kDone;
+    again = judge && control.refine(simulation->statistics().section_evaluations);
+    if (judge) run.report.accuracy = control.report();
+    if (again) run.report.end = RunEnd::kRunning;
+  }
   run.write_report();
   show(run);
+  if (run.report.accuracy && !run.report.accuracy->reached())
+    run.console.warn(describe(*run.report.accuracy));
   return run.report.exit_code;
 }
 
@@ -220,8 +244,7 @@ int run_command(const Words& words) {
   Run run{scene, options,          console, choose_output_folder(options.output, report.label),
           watch, std::move(report)};
   try {
-    const auto simulation = build_simulation(scene);
-    return run_scene(run, *simulation);
+    return run_to_accuracy(run);
   } catch (const StateError& error) {
     console.error(error.what());
     return kExitSceneInvalid;

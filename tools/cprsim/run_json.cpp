@@ -216,6 +216,15 @@ std::string to_json(const Scene& scene, const RunReport& report) {
   for (const WrittenFile& file : report.files) {
     json["files"].push_back({{"name", file.name}, {"kind", file.kind}, {"count", file.count}});
   }
+  if (report.accuracy) {
+    const AccuracyReport& accuracy = *report.accuracy;
+    json["accuracy"] = {{"asked", accuracy.asked},
+                        {"estimate", accuracy.estimate},
+                        {"reached", accuracy.reached()},
+                        {"runs", accuracy.runs},
+                        {"section_evaluations_before", accuracy.evaluations},
+                        {"fixed_by_the_scene", accuracy.held_back}};
+  }
   if (!report.failure.empty()) json["failure"] = failure_json(report);
   if (!report.film_device.empty()) json["drawn_by"] = report.film_device;
   json["host"] = host_json();

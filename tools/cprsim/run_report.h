@@ -3,6 +3,7 @@
 // made.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "engine/model/scene.h"
 #include "engine/run/simulation.h"
 #include "scenes/loader/diagnostic.h"
+#include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/expectations.h"
 #include "tools/cprsim/extremes.h"
 #include "tools/sinks/sink.h"
@@ -47,6 +49,7 @@ struct RunReport {
   SolveReport last_solve;
   std::vector<std::string> likely_causes;
   Extremes extremes;
+  std::optional<AccuracyReport> accuracy;  ///< if one was asked for
   std::vector<Diagnostic> diagnostics;
   std::vector<ExpectResult> expectations;
   std::vector<WrittenFile> files;  ///< without run.json
@@ -65,6 +68,12 @@ std::string to_json(const Scene& scene, const RunReport& report);
 /// What --json answers for a scene that is not simulated.
 std::string rejection_json(const std::string& path, int exit_code,
                            const std::vector<Diagnostic>& diagnostics);
+
+/// The value that was seen and the one that was expected, for people; one line without its end.
+std::string describe(const CheckResult& check);
+
+/// The error asked for and the one found out; one line without its end.
+std::string describe(const AccuracyReport& accuracy);
 
 /// The closing lines, for people.
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder);

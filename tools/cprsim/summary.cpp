@@ -64,10 +64,8 @@ std::string energy_line(const Scene& scene, const RunReport& report) {
                      extremes.worst_balance() / extremes.exchanged(), of);
 }
 
-std::string check_line(const CheckResult& check) {
-  if (check.channel.empty()) return fmt::format("{}: the run did not converge", check.kind);
-  return fmt::format("{} = {:.6g} at t = {:.6g} s, expected {}", check.channel, check.value,
-                     check.time, check.limit);
+std::string accuracy_line(const RunReport& report) {
+  return report.accuracy ? "  accuracy   " + describe(*report.accuracy) + "\n" : "";
 }
 
 std::string expect_lines(const RunReport& report) {
@@ -86,7 +84,7 @@ std::string expect_lines(const RunReport& report) {
     if (result.verdict == Verdict::kMet) continue;
     lines += fmt::format("    {}: '{}'\n", to_string(result.verdict), result.name);
     for (const CheckResult& check : result.checks) {
-      if (check.verdict == Verdict::kNotMet) lines += "      " + check_line(check) + "\n";
+      if (check.verdict == Verdict::kNotMet) lines += "      " + describe(check) + "\n";
     }
   }
   return lines;
@@ -132,9 +130,32 @@ const char* to_string(RunEnd end) {
   return "";
 }
 
+std::string describe(const CheckResult& check) {
+  if (check.channel.empty())
+    return check.kind == "event" ? fmt::format("expected {}, which did not come about", check.limit)
+                                 : fmt::format("{}: the run did not converge", check.kind);
+  if (check.kind == "match")
+    return fmt::format("{} is off by {:.6g}, largest at t = {:.6g} s, expected {}", check.channel,
+                       check.value, check.time, check.limit);
+  return fmt::format("{} = {:.6g} at t = {:.6g} s, expected {}", check.channel, check.value,
+                     check.time, check.limit);
+}
+
+std::string describe(const AccuracyReport& accuracy) {
+  std::string text = fmt::format(
+      "{:.3g} m asked for, error about {:.1g} m (largest distance from a looser run / 3; "
+      "{} runs in all)",
+      accuracy.asked, accuracy.estimate, accuracy.runs);
+  if (accuracy.reached()) return text;
+  return text + (accuracy.held_back.empty()
+                     ? "; not reached"
+                     : "; not reached: the scene fixes " + accuracy.held_back);
+}
+
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder) {
   return first_line(report) + effects_line(scene) + solver_line(scene, report) +
-         energy_line(scene, report) + expect_lines(report) + wrote_line(report, folder);
+         accuracy_line(report) + energy_line(scene, report) + expect_lines(report) +
+         wrote_line(report, folder);
 }
 
 std::string explain_failure(const RunReport& report, const std::string& folder) {

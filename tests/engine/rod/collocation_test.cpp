@@ -177,8 +177,8 @@ TEST(CollocationRod, ForcesJumpWherePointLoadsAct) {
 TEST(CollocationRod, FollowsATurnOfItsBaseInTwoSteps) {
   Scene scene = with_splines(grounded_rod(rod_end(EndJoint::kFixed, kWorld, Pose{}), RodEndSpec{}));
   const RodSpec& spec = scene.rods[0];
-  CollocationRod rod("rod", RodEnd(spec.base), RodEnd(spec.tip), section_properties(spec),
-                     spec.length, CollocationOptions{});
+  CollocationRod rod("rod", EndCondition(spec.base), EndCondition(spec.tip), {}, Pose{},
+                     section_properties(spec), spec.length, CollocationOptions{});
   RodForcing forcing;
   forcing.length = spec.length;
   rod.prepare({}, forcing);
