@@ -52,19 +52,21 @@ bool general_solution(const MatX& A, const MatX& B, MatX& X) {
   std::vector<Eigen::Index> entry(static_cast<std::size_t>(c));  // of x, as columns are swapped
   std::iota(entry.begin(), entry.end(), Eigen::Index{0});
   for (Eigen::Index k = 0; k < r; ++k) {
-    Eigen::Index row = 0, column = 0;
-    const double pivot = M.block(k, k, r - k, c - k).cwiseAbs().maxCoeff(&row, &column);
-    if (!(pivot > 1e-300)) return false;
-    if (row > 0) M.row(k).swap(M.row(k + row));
-    if (column > 0) {
-      M.col(k).swap(M.col(k + column));
-      std::swap(entry[static_cast<std::size_t>(k)], entry[static_cast<std::size_t>(k + column)]);
+    Eigen::Index best = k;
+    for (Eigen::Index j = k + 1; j < c; ++j)
+      if (std::abs(M(k, j)) > std::abs(M(k, best))) best = j;
+    if (!(std::abs(M(k, best)) > 1e-300)) return false;
+    if (best != k) {
+      M.col(k).swap(M.col(best));
+      std::swap(entry[static_cast<std::size_t>(k)], entry[static_cast<std::size_t>(best)]);
     }
-    M.row(k).tail(all - k) /= M(k, k);
-    for (Eigen::Index i = 0; i < r; ++i)
-      if (i != k && M(i, k) != 0)
-        M.row(i).tail(all - k) -= double(M(i, k)) * M.row(k).tail(all - k);
+    M.row(k).tail(all - k) /= double(M(k, k));
+    for (Eigen::Index i = k + 1; i < r; ++i)
+      if (M(i, k) != 0) M.row(i).tail(all - k) -= double(M(i, k)) * M.row(k).tail(all - k);
   }
+  for (Eigen::Index k = r; k-- > 1;)
+    for (Eigen::Index i = 0; i < k; ++i)
+      M.row(i).tail(all - r) -= double(M(i, k)) * M.row(k).tail(all - r);
   X.setZero(c, all - r);
   for (Eigen::Index k = 0; k < c; ++k) {
     const Eigen::Index x = entry[static_cast<std::size_t>(k)];

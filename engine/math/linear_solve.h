@@ -24,8 +24,9 @@ VecX solve_symmetric(const MatX& N, const VecX& b);
 /// Solution of A X = B by LU with partial pivoting; A must be regular.
 MatX solve_columns(const MatX& A, const MatX& B);
 
-/// All x with A x + B y = 0 for A with fewer rows than columns, by elimination with complete
-/// pivoting: x = X [z; y], where z are the entries of x that no pivot was taken for.
+/// All x with A x + B y = 0 for A with fewer rows than columns, row by row with the largest entry
+/// of each as its pivot: x = X [z; y], where z are the entries of x that no pivot was taken for.
+/// The scale of rows does not matter, that of columns does.
 /// @return false if no pivot is left: a row vanishes, or is no number.
 bool general_solution(const MatX& A, const MatX& B, MatX& X);
 

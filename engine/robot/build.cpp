@@ -172,8 +172,9 @@ void add_rods(Robot& robot) {
       if (load.rod == static_cast<int>(i)) rod.loads.push_back(&load);
     rod.gravity = spec.gravity && !off_for(spec, "gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
-    rod.choice = choose_method(spec, scene.solver);
-    rod.model = make_rod(rod.choice.method, plan_of(robot, rod));
+    const RodPlan plan = plan_of(robot, rod);
+    rod.choice = choose_method(plan);
+    rod.model = make_rod(rod.choice.method, plan);
     robot.rods.push_back(std::move(rod));
   }
 }

@@ -11,7 +11,7 @@
 #include "engine/model/scene.h"
 #include "engine/robot/body.h"
 #include "engine/robot/joint.h"
-#include "engine/rod/make_rod.h"
+#include "engine/rod/fineness.h"
 #include "engine/section/section.h"
 
 namespace cprsim {

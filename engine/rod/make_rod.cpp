@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/rod/make_rod.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "engine/math/so3.h"
 #include "engine/rod/collocation.h"
+#include "engine/rod/fineness.h"
 #include "engine/rod/planar.h"
 #include "engine/rod/shooting.h"
 #include "engine/rod/strain_basis.h"
@@ -14,40 +13,10 @@
 namespace cprsim {
 namespace {
 
-// Measured on the published Stewart-Gough robot (rods bent by about a radian): N cells of gauss6
-// leave an error of 3.4e-8 L (6 / N)^6. An accuracy asked for gets ten times less; without one, 6
-// cells. Other integrators are there to be compared with and get cells for about the same cost. The
-// error depends on how far a cell turns: a rod wound up by `turn` > 1 rad gets as many times more.
-int default_cells(ArcIntegrator integrator, const std::optional<double>& accuracy, double length,
-                  double turn) {
-  const double winding = std::max(1.0, turn);
-  double cells = integrator == ArcIntegrator::kGauss6 ? 6 : 12;
-  if (integrator == ArcIntegrator::kGauss6 && accuracy)
-    cells = std::clamp(std::ceil(6 * std::pow(3.4e-7 * length / *accuracy, 1.0 / 6)), 3.0, 60.0);
-  return static_cast<int>(std::clamp(std::ceil(cells * winding), 3.0, 600.0));
-}
-
-// Measured on the same robot: 8 elements of degree 2, 3, ... leave an error of kSplineError L, E
-// elements (8 / E)^order of it, where order is p for even p and p + 1 for odd p.
-constexpr double kSplineError[] = {2.4e-3, 4.5e-6, 7.2e-6, 4.5e-7, 1.5e-7, 2e-9, 3.3e-10};
-
-int default_elements(int degree, const std::optional<double>& accuracy, double length,
-                     double turn) {
-  double elements = 4;
-  if (accuracy) {
-    const double error = kSplineError[degree - kLeastDegree] * length;
-    const int order = degree + degree % 2;
-    elements = std::clamp(std::ceil(8 * std::pow(10 * error / *accuracy, 1.0 / order)), 2.0, 200.0);
-  }
-  return static_cast<int>(std::clamp(std::ceil(elements * std::max(1.0, turn)), 2.0, 400.0));
-}
-
 ShootingOptions shooting_options(const RodPlan& plan) {
   ShootingOptions o;
-  const double length = plan.spec->length;
   o.integrator = plan.solver->integrator.value_or(kDefaultIntegrator);
-  o.cells = plan.solver->points.value_or(default_cells(o.integrator, plan.solver->accuracy, length,
-                                                       length * plan.section.u_rest.norm()));
+  o.cells = shooting_cells(plan);
   o.extension = plan.extension;
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
@@ -93,8 +62,8 @@ std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
 std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   StrainOptions o;
-  o.order = plan.solver->order.value_or(o.order);
-  o.elements = plan.solver->elements.value_or(o.elements);
+  o.order = strain_order(plan);
+  o.elements = strain_elements(plan);
   o.extension = plan.extension;
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
@@ -113,8 +82,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   CollocationOptions o;
   o.degree = plan.solver->degree.value_or(kDefaultDegree);
-  o.elements = plan.solver->elements.value_or(default_elements(
-      o.degree, plan.solver->accuracy, spec.length, spec.length * plan.section.u_rest.norm()));
+  o.elements = collocation_elements(plan);
   o.extension = plan.extension;
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
@@ -131,13 +99,6 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
 }
 
 }  // namespace
-
-MethodChoice choose_method(const RodSpec& rod, const SolverSpec& solver) {
-  if (rod.method && *rod.method != Method::kAuto) return {*rod.method, "the rod asks for it"};
-  if (!rod.method && solver.method != Method::kAuto)
-    return {solver.method, "the solver asks for it"};
-  return {Method::kShooting, "auto"};
-}
 
 std::unique_ptr<RodModel> make_rod(Method method, const RodPlan& plan) {
   switch (method) {

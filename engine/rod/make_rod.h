@@ -28,15 +28,6 @@ struct RodPlan {
   const SolverSpec* solver = nullptr;  ///< resolution, accuracy
 };
 
-/// What is done with a rod, and why.
-struct MethodChoice {
-  Method method = Method::kShooting;
-  std::string why;  ///< e.g. "the scene asks for it"
-};
-
-/// kAuto resolved: the rod's own method, otherwise the solver's, otherwise one that fits.
-MethodChoice choose_method(const RodSpec& rod, const SolverSpec& solver);
-
 /// Unloaded, from its base frame.
 /// @throws std::invalid_argument for what the method cannot do.
 std::unique_ptr<RodModel> make_rod(Method method, const RodPlan& plan);

@@ -79,6 +79,8 @@ void StrainRod::list_modes(const Mat3& R_WBase) {
       add(Vec3::Unit(i), false, true);
   }
   add(Vec3::UnitZ(), false, options_.extension);
+  for (std::size_t a = 0; a < modes_.size(); ++a)
+    if (modes_[a].listed) free_modes_.push_back(a);
 }
 
 // With constant u: R = R_0 exp(s u^), p = p_0 + s R_0 J_l(s u) z.
@@ -215,7 +217,23 @@ void StrainRod::evaluate_rotary_inertia(std::size_t point) {
   evaluate_rotary(model, rotary_[point]);
 }
 
-// (3) and the integral of (4), element by element.
+// (4)
+void StrainRod::project_law(std::size_t e) {
+  const Eigen::Index G = rule_.points();
+  const StrainPoint* const point = &points_[e * static_cast<std::size_t>(G)];
+  for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+    const auto a = static_cast<Eigen::Index>(free_modes_[f]);
+    const StrainMode& mode = modes_[free_modes_[f]];
+    VecX row = (q_[e].row(a) + q_0_[e].row(a)).transpose();
+    for (Eigen::Index i = 0; i < G; ++i) {
+      const Vec3 Lambda = point[i].R.transpose() * (mode.turns ? point[i].m : point[i].n);
+      row -= compliance(mode) * rule_.gauss.weights[i] * mode.axis.dot(Lambda) * rule_.phi.col(i);
+    }
+    law_residual_.segment(first_unknown(e, f), rule_.functions()) = row / unit(mode);
+  }
+}
+
+// (3) along an element.
 void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
   const Eigen::Index G = rule_.points();
   const double h = length_of(e);
@@ -261,17 +279,6 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
   Eigen::Map<Vec3>(state.p) = p_end;
   Eigen::Map<Vec3>(state.n) = n_end;
   Eigen::Map<Vec3>(state.m) = m_end;
-  // (4)
-  for (std::size_t f = 0; f < free_modes_.size(); ++f) {
-    const auto a = static_cast<Eigen::Index>(free_modes_[f]);
-    const StrainMode& mode = modes_[free_modes_[f]];
-    VecX row = (q_[e].row(a) + q_0_[e].row(a)).transpose();
-    for (Eigen::Index i = 0; i < G; ++i) {
-      const Vec3 Lambda = point[i].R.transpose() * (mode.turns ? point[i].m : point[i].n);
-      row -= compliance(mode) * w[i] * mode.axis.dot(Lambda) * rule_.phi.col(i);
-    }
-    law_residual_.segment(first_unknown(e, f), rule_.functions()) = row / unit(mode);
-  }
 }
 
 void StrainRod::add_row(RodResidual& r, double value, int row) const {
@@ -301,6 +308,7 @@ RodResidual StrainRod::evaluate(const Port& base, const Port& tip) {
   nodes_[0] = state;
   for (std::size_t e = 0; e < elements(); ++e) {
     evaluate_element(e, state);
+    project_law(e);
     apply_load(e + 1, state);
     nodes_[e + 1] = state;
   }

@@ -16,7 +16,7 @@
 // of in SE(3), so that they and the forces use one rule.
 //
 // Unknowns: pose and wrench at the base, and q. Rows: the base's, (4), the tip's. A direction
-// solves them at once: complete pivoting leaves d = 6 unknowns z (3 in a plane) and the d rows of
+// solves them at once: elimination leaves d = 6 unknowns z (3 in a plane) and the d rows of
 // the tip (engine/rod/rod_model.h), whatever is stiff, free or singular. Elements begin and end at
 // point loads, where the strain is not smooth.
 #pragma once
@@ -154,6 +154,7 @@ class StrainRod final : public RodModel {
   Turn turn(std::size_t element, const StrainRule::Step& step, const Mat3& R_start) const;
   Mat3 cross_gap(std::size_t element, std::size_t gap, Mat3 R);
   void evaluate_element(std::size_t element, NodeState& state);
+  void project_law(std::size_t element);
   void evaluate_rotary_inertia(std::size_t point);
   void apply_load(std::size_t node, NodeState& state) const;
   void update_point_inputs();

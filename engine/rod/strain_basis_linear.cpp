@@ -5,6 +5,7 @@
 
 #include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
+#include "engine/rod/end_wrench.h"
 #include "engine/rod/magnus.h"
 #include "engine/rod/strain_basis.h"
 
@@ -170,60 +171,19 @@ bool StrainRod::linearize(const Port& base, const Port& tip, CondensedRod& out) 
   if (!general_solution(A, B, general_)) return false;
   out.growth = general_.leftCols(d).cwiseAbs().maxCoeff();
 
-  // the tip's rows, and the wrench on its body: force -n, moment -(m + r × n)
-  const MatX Y = tip_columns_ * general_, motion = space_.motion;
-  const ConditionRows closed = tip_.rows(nodes_.back(), tip, scale_);
-  const MatX T = closed.by_state * Y;
-  out.T.topLeftCorner(d, d) = T.leftCols(d);
-  out.T_A.topLeftCorner(d, d) = T.middleCols(d, d);
-  out.T_B.topLeftCorner(d, d) = closed.by_body * motion;
-  out.t.head(d) = closed.value - tip_gap_ + T.col(states);
-  const auto moment_arm = [](const NodeState& end, const Vec3& r) {
-    Mat6x12 W = Mat6x12::Zero();
-    W.block<3, 3>(0, 3) = -hat(force_of(end));
-    W.block<3, 3>(0, 6) = hat(r);
-    W.block<3, 3>(0, 9) = W.block<3, 3>(3, 6) = Mat3::Identity();
-    return W;
-  };
-  Mat6 by_body = Mat6::Zero();
-  const NodeState& end = nodes_.back();
-  MatX W = MatX::Zero(d, states + 1);
-  if (tip_.held()) {
-    W = -motion.transpose() * moment_arm(end, position_of(end) - tip.p + tip.arm) * Y;
-    W.col(states) += motion.transpose() * wrench_on_tip(tip);
-    by_body.block<3, 3>(0, 3) = -hat(force_of(end));
-  }
-  out.WB_z.topLeftCorner(d, d) = W.leftCols(d);
-  out.WB_A.topLeftCorner(d, d) = W.middleCols(d, d);
-  out.wb.head(d) = W.col(states);
-  out.WB_B.topLeftCorner(d, d) = motion.transpose() * by_body * motion;
-
-  // the wrench on the base's body
-  by_body.block<3, 3>(0, 3) = hat(force_of(start_));
-  W = motion.transpose() * moment_arm(start_, position_of(start_) - base.p + base.arm) * from_x *
-      general_.topRows(states);
-  W.col(states) += motion.transpose() * wrench_on_base(base);
-  W.middleCols(d, d) += motion.transpose() * by_body * motion;
-  const double moved = base_.held() && base.moves ? 1 : 0;
-  out.WA_z.topLeftCorner(d, d) = moved * W.leftCols(d);
-  out.WA_A.topLeftCorner(d, d) = moved * W.middleCols(d, d);
-  out.wa.head(d) = moved * W.col(states);
+  ConditionRows closed = tip_.rows(nodes_.back(), tip, scale_);
+  closed.value -= tip_gap_;
+  condense_tip(space_, closed, tip_.held(), nodes_.back(), tip, tip_columns_ * general_, out);
+  condense_base(space_, start_, base, from_x * general_.topRows(states), out);
   return true;
 }
 
 Vec6 StrainRod::wrench_on_base(const Port& base) const {
-  const Vec3 r = position_of(start_) - base.p + base.arm;
-  Vec6 w;
-  w << moment_of(start_) + r.cross(force_of(start_)), force_of(start_);
-  return space_.motion * (space_.motion.transpose() * w);
+  return cprsim::wrench_on_base(space_, start_, base);
 }
 
 Vec6 StrainRod::wrench_on_tip(const Port& tip) const {
-  const NodeState& end = nodes_.back();
-  const Vec3 r = position_of(end) - tip.p + tip.arm;
-  Vec6 w;
-  w << -(moment_of(end) + r.cross(force_of(end))), -force_of(end);
-  return space_.motion * (space_.motion.transpose() * w);
+  return cprsim::wrench_on_tip(space_, nodes_.back(), tip);
 }
 
 void StrainRod::set_direction(const Vec6& z, const Vec6& zeta_A) {

@@ -230,7 +230,7 @@ RodSample StrainRod::observe() const {
 RodField StrainRod::field() const {
   RodField f;
   f.table = &arc_tableau(ArcIntegrator::kGauss6);
-  const int pieces = std::max(3, static_cast<int>(rule_.points()) / 2);
+  const int pieces = static_cast<int>(rule_.points());
   const Eigen::Index G = rule_.points();
   for (std::size_t e = 0; e < elements(); ++e)
     for (int c = 0; c < pieces; ++c) {

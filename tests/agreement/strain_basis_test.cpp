@@ -74,5 +74,39 @@ TEST(StrainBasis, HasOnlyTheStrainsThatEffectsAllow) {
   EXPECT_EQ(Equilibrium(scene).robot.rods[0].model->unknown_count(), 6 + 5);
 }
 
+// A helix of four turns that sags: its bending in section axes goes round with the winding.
+TEST(StrainBasis, CutsAWoundRodFinelyEnough) {
+  Scene scene;
+  scene.rods.push_back(steel_rod(0.8, 1e-3));
+  scene.rods[0].rest_curvature = {0, 24, 18};
+  switch_on(scene, {Effect::kGravity});
+  scene.gravity = {-9.81, 3, 0};
+  scene.solver.accuracy = 1e-7;
+  const Equilibrium shooting(scene);
+  scene.solver.method = Method::kStrain;
+  const Equilibrium strain(scene);
+  ASSERT_TRUE(strain.report.converged()) << strain.report.worst_row;
+  EXPECT_GE(strain.robot.rods[0].model->resolution().elements, 6);
+  EXPECT_NE(strain.robot.rods[0].choice.why.find("more for its rest shape"), std::string::npos);
+  EXPECT_LT((shooting.rod().points.back().position - strain.rod().points.back().position).norm(),
+            1e-7);
+}
+
+TEST(Auto, TakesTheMethodWhoseResolutionIsGiven) {
+  Scene scene = bent_rod(1, 4);
+  scene.solver.method = Method::kAuto;
+  EXPECT_EQ(build_robot(scene).rods[0].model->resolution().method, Method::kStrain);
+  scene.solver.order.reset();
+  scene.solver.elements.reset();
+  EXPECT_EQ(build_robot(scene).rods[0].model->resolution().method, Method::kShooting);
+  scene.rods[0].method = Method::kStrain;
+  scene.solver.accuracy = 1e-9;
+  const Robot robot = build_robot(scene);
+  const RodResolution resolution = robot.rods[0].model->resolution();
+  EXPECT_EQ(resolution.method, Method::kStrain);
+  EXPECT_GE(resolution.order, 7);
+  EXPECT_EQ(robot.rods[0].choice.why, "the rod asks for it; cut for 1e-09 m");
+}
+
 }  // namespace
 }  // namespace cprsim

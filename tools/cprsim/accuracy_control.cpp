@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/quiet_run.h"
 
 namespace cprsim {
@@ -16,6 +17,15 @@ constexpr double kShare = 3;    // (1)
 constexpr int kMostRuns = 5;
 constexpr double kLeastAccuracy = 1e-12;  // m; what a scene may ask for
 constexpr double kRoundOff = 1e-9;        // of a step: times are sums of rounded steps
+
+/// What every rod is cut into: pieces, and the order on them.
+std::vector<std::pair<int, int>> resolution_of(const Scene& scene) {
+  std::vector<std::pair<int, int>> all;
+  const auto simulation = build_simulation(scene);
+  for (const RodFacts& rod : simulation->facts().rods)
+    all.emplace_back(rod.elements, rod.order);
+  return all;
+}
 
 /// Steps of this scheme are what the scene says, whatever the error.
 bool takes_fixed_steps(const Scene& scene) {
@@ -109,7 +119,14 @@ AccuracyControl::AccuracyControl(const Scene& scene)
 }
 
 void AccuracyControl::fly_pilot(const std::function<bool()>& stop) {
-  const Scene scene = looser(scene_);
+  Scene scene = looser(scene_);
+  // at its coarsest the formula gives the pilot no fewer pieces, and no error would be seen
+  const auto resolution = resolution_of(scene_);
+  if (!resolution.empty() && resolution == resolution_of(scene)) {
+    const auto [elements, order] = *std::min_element(resolution.begin(), resolution.end());
+    scene.solver.points = scene.solver.elements = std::max(1, elements * 2 / 3);
+    scene.solver.order = std::max(1, order - 1);
+  }
   pilot_.emplace(scene);
   const QuietRun run = run_quietly(
       scene,

@@ -91,7 +91,8 @@ std::variant<SweepOptions, int> parse_sweep_options(const Words& words) {
            });
   line.text("--reference", options.reference, "WHICH",
             "tight (default), none, settings like points=48,tolerance=1e-9, or a CSV or TUM file");
-  line.text("--sweep", options.sweep, "NAME", "Which <cprsim:sweep> of the scene");
+  line.text("--sweep", options.sweep, "NAME",
+            "Which <cprsim:sweep> of the scene; all: none of them, but all schemes and methods");
   line.flag("--quick", options.quick, "Without --vary: fewer settings");
   line.count("--repeat", options.repetitions, 1, "Short runs are timed so often; the best counts");
   line.text("-o,--output", options.output, "DIR", "Folder (default out/<scene>_sweep)");

@@ -75,7 +75,7 @@ void add_grid(const std::vector<SweepAxis>& grid, SweepPlan& plan) {
 }
 
 const SweepSpec* sweep_of(const Scene& scene, const SweepOptions& options) {
-  if (!options.vary.empty()) return nullptr;
+  if (!options.vary.empty() || options.sweep == "all") return nullptr;
   std::vector<std::string> names;
   for (const SweepSpec& spec : scene.sweeps) {
     if (options.sweep.empty() || spec.name == options.sweep) return &spec;
