@@ -26,6 +26,8 @@ class ChannelReader {
   /// One value per channel, in their order; valid until the next call.
   const std::vector<double>& read(const Snapshot& snapshot);
 
+  void visit(Archive& archive) { archive.doubles(last_quaternions_); }
+
  private:
   const Scene* scene_;
   std::vector<Channel> channels_;

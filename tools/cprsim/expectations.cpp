@@ -148,6 +148,30 @@ void Expectations::step(const Snapshot& before, const Snapshot& now) {
   }
 }
 
+void Expectations::resume(const Snapshot& now) {
+  for (std::vector<Watch>& watches : watches_)
+    for (Watch& watch : watches)
+      if (watch.match) watch.match->begin(now);
+}
+
+void Expectations::visit(Archive& archive) {
+  constexpr std::size_t kMostChannels = 100'000;
+  for (std::vector<Watch>& watches : watches_)
+    for (Watch& watch : watches) {
+      watch.reader.visit(archive);
+      for (bool* x : {&watch.reached_end, &watch.touched, &watch.happened})
+        archive(*x);
+      if (watch.match) watch.match->visit(archive);
+      watch.first.resize(archive.count(watch.first.size(), kMostChannels));
+      archive.doubles(watch.first);
+      archive(watch.worst);
+      archive(watch.at_worst.channel);
+      archive(watch.at_worst.value);
+      archive(watch.at_worst.time);
+      archive(watch.at_worst.limit);
+    }
+}
+
 double Expectations::end() const {
   return scene_.simulation.mode == Mode::kStatic ? 0 : scene_.simulation.duration;
 }

@@ -43,7 +43,11 @@ class Expectations : public Sink {
   explicit Expectations(const Scene& scene);
 
   void begin(const Snapshot& start) override;
+
+  void resume(const Snapshot& now) override;
+
   void step(const Snapshot& before, const Snapshot& now) override;
+  void visit(Archive& archive) override;
 
   void finish() override {}
 

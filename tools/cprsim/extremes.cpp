@@ -22,6 +22,12 @@ void Extremes::note(const Snapshot& now) {
   deepest_penetration_ = std::max(deepest_penetration_, now.contact.penetration);
 }
 
+void Extremes::visit(Archive& archive) {
+  cprsim::visit(energy_, archive);
+  for (double* x : {&worst_balance_, &largest_work_, &largest_kinetic_, &deepest_penetration_})
+    archive(*x);
+}
+
 double Extremes::exchanged() const {
   return std::max({largest_work_, largest_kinetic_, std::abs(energy_.dissipated)});
 }

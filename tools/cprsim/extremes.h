@@ -9,7 +9,11 @@ namespace cprsim {
 class Extremes : public Sink {
  public:
   void begin(const Snapshot& start) override;
+
+  void resume(const Snapshot&) override {}
+
   void step(const Snapshot& before, const Snapshot& now) override;
+  void visit(Archive& archive) override;
 
   void finish() override {}
 

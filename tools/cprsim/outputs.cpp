@@ -112,6 +112,20 @@ void Outputs::begin(const Snapshot& start) {
   seconds_ += watch.seconds();
 }
 
+void Outputs::resume(const Snapshot& now) {
+  expectations_.resume(now);
+  extremes_.resume(now);
+  for (const auto& sink : sinks_)
+    sink->resume(now);
+}
+
+void Outputs::visit(Archive& archive) {
+  expectations_.visit(archive);
+  extremes_.visit(archive);
+  for (const auto& sink : sinks_)
+    sink->visit(archive);
+}
+
 void Outputs::step(const Snapshot& before, const Snapshot& now) {
   const Stopwatch watch;
   expectations_.step(before, now);

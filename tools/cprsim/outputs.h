@@ -25,6 +25,11 @@ class Outputs {
           const Console& console);
 
   void begin(const Snapshot& start);
+  /// In its place: the run goes on from here.
+  void resume(const Snapshot& now);
+  /// What expectations and recordings have seen. @throws StateError if those of the scene and of
+  /// the state are others
+  void visit(Archive& archive);
   void step(const Snapshot& before, const Snapshot& now);
   /// Completes every file that can be completed. @return the first complaint, or an empty string
   std::string finish();

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "engine/math/state_text.h"
 #include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/commands.h"
@@ -20,6 +21,7 @@
 #include "tools/cprsim/progress.h"
 #include "tools/cprsim/run_options.h"
 #include "tools/cprsim/run_report.h"
+#include "tools/cprsim/state_files.h"
 #include "tools/cprsim/stopwatch.h"
 #include "tools/sinks/output_file.h"
 
@@ -52,11 +54,12 @@ bool must_stop(Run& run) {
 }
 
 /// Advances to the end, or to what stops it; the loop of the program.
-void simulate(Run& run, Simulation& simulation, Outputs& outputs) {
+void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& states) {
   Progress progress(run.console.progress(), run.report.label, simulation.end_time());
-  simulation.start();
+  states.start(simulation);
   if (simulation.status() != RunStatus::kFailed) {
-    outputs.begin(simulation.now());
+    const std::string warning = states.start(outputs, simulation);
+    if (!warning.empty()) run.console.warn(warning);
     if (run.track != nullptr) run.track->begin(simulation.now());
   }
   while (simulation.status() == RunStatus::kRunning && !must_stop(run)) {
@@ -64,18 +67,24 @@ void simulate(Run& run, Simulation& simulation, Outputs& outputs) {
     if (simulation.status() == RunStatus::kFailed) break;
     outputs.step(simulation.before(), simulation.now());
     if (run.track != nullptr) run.track->step(simulation.before(), simulation.now());
+    if (run.track == nullptr) states.step(simulation, outputs);
     progress.update(simulation.time(), simulation.statistics().steps,
                     simulation.statistics().iterations);
   }
   progress.finish();
   if (simulation.status() == RunStatus::kDone) run.report.end = RunEnd::kDone;
+  if (run.track != nullptr) return;  // its error is judged over the whole of a run
+  if (run.report.end == RunEnd::kInterrupted || run.report.end == RunEnd::kWallTime)
+    states.write("checkpoint.state", simulation, outputs);
+  if (simulation.status() == RunStatus::kFailed && simulation.statistics().steps > 0)
+    states.write("failure.state", simulation, outputs);
 }
 
 /// The same, with whatever disk, pipe or graphics have to complain about.
-void simulate_or_complain(Run& run, Simulation& simulation, Outputs& outputs) {
+void simulate_or_complain(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& states) {
   std::string complaint;
   try {
-    simulate(run, simulation, outputs);
+    simulate(run, simulation, outputs, states);
   } catch (const std::runtime_error& error) {
     complaint = error.what();
   }
@@ -109,7 +118,8 @@ int exit_code_of(const Run& run) {
   return std::any_of(results.begin(), results.end(), fails) ? kExitExpectationFailed : kExitDone;
 }
 
-void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
+void conclude(Run& run, const Simulation& simulation, const Outputs& outputs,
+              const StateFiles& states) {
   RunReport& report = run.report;
   report.time = simulation.time();
   report.statistics = simulation.statistics();
@@ -124,6 +134,8 @@ void conclude(Run& run, const Simulation& simulation, const Outputs& outputs) {
   report.extremes = outputs.extremes();
   report.expectations = outputs.expectations().results(report.end == RunEnd::kDone);
   report.files = outputs.files();
+  for (WrittenFile& file : states.files())
+    report.files.push_back(std::move(file));
   report.exit_code = exit_code_of(run);
   report.timings.build = report.statistics.build_seconds;
   report.timings.start = report.statistics.start_seconds;
@@ -144,6 +156,7 @@ void show(const Run& run) {
 }
 
 void run_scene(Run& run, Simulation& simulation) {
+  StateFiles states(run.scene, run.options, run.folder, simulation);
   const OutputFolder folder(run.folder);
   run.report.facts = simulation.facts();
   run.report.end_time = simulation.end_time();
@@ -153,8 +166,8 @@ void run_scene(Run& run, Simulation& simulation) {
     run.report.film_device = outputs.drawn_by();
     run.report.files = outputs.files();
     run.write_report();
-    simulate_or_complain(run, simulation, outputs);
-    conclude(run, simulation, outputs);
+    simulate_or_complain(run, simulation, outputs, states);
+    conclude(run, simulation, outputs, states);
   } catch (const std::runtime_error& error) {
     run.report.end = RunEnd::kOutput;
     run.report.failure = error.what();
@@ -165,6 +178,8 @@ void run_scene(Run& run, Simulation& simulation) {
 /// Runs once, or, where an accuracy is asked for, until the error found out is small enough.
 int run_to_accuracy(Run& run) {
   AccuracyControl control(run.scene);
+  if (control.asked() && !run.options.from.empty())
+    throw StateError("a run that is held to an <accuracy> cannot go on from a state");
   if (control.asked()) control.fly_pilot([&] { return must_stop(run); });
   for (bool again = true; again;) {
     const auto simulation = build_simulation(control.scene());
@@ -230,6 +245,9 @@ int run_command(const Words& words) {
           watch, std::move(report)};
   try {
     return run_to_accuracy(run);
+  } catch (const StateError& error) {
+    console.error(error.what());
+    return kExitSceneInvalid;
   } catch (const std::invalid_argument& error) {
     console.error(options.path + ": " + error.what());
     return kExitSceneInvalid;

@@ -25,6 +25,9 @@ struct RunOptions {
   bool no_video = false, no_record = false;
   std::vector<StillOption> stills;
   std::optional<double> max_wall;
+  std::string from;  ///< a state file; empty: from the start
+  std::optional<double> checkpoint_every;
+  bool hash = false;
   int jobs = 0;  ///< 0: no limit
 
   /// What changes the result, for run.json.

@@ -65,6 +65,18 @@ void SeriesRecorder::step(const Snapshot& before, const Snapshot& now) {
   }
 }
 
+void SeriesRecorder::visit(Archive& archive) {
+  reader_.visit(archive);
+  archive(next_);
+  const std::size_t seen = archive.count(series_.time.size(), instants_.size());
+  series_.time.resize(seen);
+  archive.doubles(series_.time);
+  for (SeriesColumn& column : series_.columns) {
+    column.values.resize(seen);
+    archive.doubles(column.values);
+  }
+}
+
 TrajectoryMatch::TrajectoryMatch(const Scene& scene, const Expectation& expected)
     : expected_(&expected),
       reference_(read_series(expected.reference)),

@@ -19,6 +19,7 @@ class SeriesRecorder {
 
   void begin(const Snapshot& start);
   void step(const Snapshot& before, const Snapshot& now);
+  void visit(Archive& archive);
 
   /// What was seen so far.
   const Series& series() const { return series_; }
@@ -40,6 +41,8 @@ class TrajectoryMatch {
   void begin(const Snapshot& start) { recorder_.begin(start); }
 
   void step(const Snapshot& before, const Snapshot& now) { recorder_.step(before, now); }
+
+  void visit(Archive& archive) { recorder_.visit(archive); }
 
   /// Nothing while the run and the reference have no instant in common.
   std::optional<QuantityComparison> compare() const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sinks/frame_sink.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -37,6 +38,11 @@ FrameSink::FrameSink(const Scene& scene, const VideoSpec& video, std::filesystem
 
 void FrameSink::begin(const Snapshot& start) {
   draw(start);
+}
+
+void FrameSink::resume(const Snapshot& now) {
+  const double period = view_.video().speed / view_.video().fps;
+  frames_ = static_cast<long>(std::floor(now.time / period + kRoundOff)) + 1;
 }
 
 void FrameSink::step(const Snapshot& before, const Snapshot& now) {

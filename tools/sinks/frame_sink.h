@@ -19,6 +19,7 @@ class FrameSink : public Sink {
             std::string name);
 
   void begin(const Snapshot& start) override;
+  void resume(const Snapshot& now) override;
   void step(const Snapshot& before, const Snapshot& now) override;
 
   void finish() override {}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/sinks/recording.h"
 
+#include <cmath>
+
 namespace cprsim {
 
 namespace {
@@ -20,6 +22,16 @@ Recording::Recording(const Scene& scene, const RecordSpec& spec,
 
 void Recording::begin(const Snapshot& start) {
   record(start);
+}
+
+void Recording::resume(const Snapshot& now) {
+  if (spec_.rate > 0)
+    records_ = static_cast<long>(std::floor(now.time * spec_.rate + kRoundOff)) + 1;
+}
+
+void Recording::visit(Archive& archive) {
+  archive(records_);
+  reader_.visit(archive);
 }
 
 void Recording::step(const Snapshot& before, const Snapshot& now) {

@@ -18,6 +18,8 @@ class Recording : public Sink {
   Recording(const Scene& scene, const RecordSpec& spec, const std::filesystem::path& folder);
 
   void begin(const Snapshot& start) override;
+  void resume(const Snapshot& now) override;
+  void visit(Archive& archive) override;
   void step(const Snapshot& before, const Snapshot& now) override;
   void finish() override;
   std::vector<WrittenFile> files() const override;

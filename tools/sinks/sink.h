@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/run/snapshot.h"
 
 namespace cprsim {
@@ -22,7 +23,16 @@ class Sink {
   virtual ~Sink() = default;
 
   virtual void begin(const Snapshot& start) = 0;
+
+  /// In the place of begin(): the run goes on from this state, which an earlier run has reached and
+  /// recorded.
+  virtual void resume(const Snapshot& now) { begin(now); }
+
   virtual void step(const Snapshot& before, const Snapshot& now) = 0;
+
+  /// What must be known to go on as if nothing had happened.
+  virtual void visit(Archive&) {}
+
   /// Completes the files, also after a run that failed or was interrupted.
   virtual void finish() = 0;
   virtual std::vector<WrittenFile> files() const = 0;

@@ -27,8 +27,13 @@ void StillSink::begin(const Snapshot& start) {
   if (time_ && *time_ <= start.time) draw(start);
 }
 
+void StillSink::resume(const Snapshot& now) {
+  earlier_ = time_ && *time_ <= now.time;
+  if (!earlier_) begin(now);
+}
+
 void StillSink::step(const Snapshot& before, const Snapshot& now) {
-  if (drawn_) return;
+  if (drawn_ || earlier_) return;
   const bool passed = time_ && *time_ <= now.time;
   last_ = passed ? interpolate(before, now, *time_) : now;
   for (double t = before.time + kTracePeriod; t < last_.time; t += kTracePeriod) {

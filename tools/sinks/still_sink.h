@@ -19,6 +19,7 @@ class StillSink : public Sink {
             std::string name);
 
   void begin(const Snapshot& start) override;
+  void resume(const Snapshot& now) override;
   void step(const Snapshot& before, const Snapshot& now) override;
   void finish() override;
   std::vector<WrittenFile> files() const override;
@@ -32,7 +33,7 @@ class StillSink : public Sink {
   std::string name_;
   View view_;
   Snapshot last_;
-  bool begun_ = false, drawn_ = false;
+  bool begun_ = false, drawn_ = false, earlier_ = false;
 };
 
 }  // namespace cprsim
