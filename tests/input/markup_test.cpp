@@ -33,7 +33,8 @@ TEST(Structure, TellsEveryMistakeAtOnce) {
     <joint name="nobody" type="fixed"><parent>plate</parent><child>ghost</child></joint>
     <cprsim:rod name="loose" class="steel"><base attached_to="ghost" joint="fixed"/><length>0.1</length></cprsim:rod>
     <link name="plate"/>)"));
-  EXPECT_EQ(error_codes(result), (std::vector<std::string>{"E401", "E403", "E405", "E407", "E501"}));
+  EXPECT_EQ(error_codes(result),
+            (std::vector<std::string>{"E401", "E403", "E405", "E407", "E501"}));
   for (const Diagnostic& d : result.diagnostics)
     EXPECT_GT(d.line, 0) << d.message;
 }

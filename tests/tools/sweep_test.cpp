@@ -134,7 +134,8 @@ TEST_F(Sweep, CarriesOutWhatTheSceneAsksFor) {
   EXPECT_EQ(report["measures"][0]["name"], "wire::rod(s=0.5).position");
   EXPECT_EQ(report["runs"].size(), 2U);
   // or every scheme and method instead
-  ASSERT_EQ(run("sweep s.xml --set simulation/@mode=static --sweep all --quick --repeat 1").code, 0);
+  ASSERT_EQ(run("sweep s.xml --set simulation/@mode=static --sweep all --quick --repeat 1").code,
+            0);
   EXPECT_GT(json("out/s_sweep/sweep.json")["runs"].size(), 10U);
 }
 

@@ -66,6 +66,7 @@ int complain(const CLI::App& app, const std::string& message) {
 
 struct CommandLine::Parser {
   CLI::App app;
+  std::vector<std::pair<std::string, std::string>> exclusive;  ///< not CLI11's: it widens the help
 };
 
 CommandLine::CommandLine(const std::string& name, const std::string& about)
@@ -158,8 +159,7 @@ void CommandLine::require(const std::string& name) {
 }
 
 void CommandLine::exclude(const std::string& name, const std::string& other) {
-  CLI::App& app = parser_->app;
-  option_named(app, name)->excludes(option_named(app, other));
+  parser_->exclusive.emplace_back(name, other);
 }
 
 std::optional<int> CommandLine::parse(const Words& words) {
@@ -173,6 +173,9 @@ std::optional<int> CommandLine::parse(const Words& words) {
   } catch (const CLI::ParseError& error) {
     return complain(app, error.what());
   }
+  for (const auto& [name, other] : parser_->exclusive)
+    if (app.count(name) > 0 && app.count(other) > 0)
+      return complain(app, fmt::format("{} excludes {}", name, other));
   const Words left = app.remaining();
   for (const std::string& word : left) {
     if (word.size() > 1 && word[0] == '-') {

@@ -27,7 +27,6 @@ std::variant<RunOptions, int> parse_run_options(const Words& words) {
   CommandLine line("cprsim run",
                    "Simulates a scene and records, films and checks what it asks for.\n\n"
                    "Examples\n"
-                   "  cprsim scene.xml\n"
                    "  cprsim run scene.xml --duration 1 --with shear -o try\n"
                    "  cprsim run scene.xml --no-video --still shot.png@0.5");
   line.scene(options.path);
