@@ -143,6 +143,10 @@ const std::string& Simulation::failure() const {
   return parts_->failure;
 }
 
+const Robot& Simulation::robot() const {
+  return parts_->robot;
+}
+
 const SolveReport& Simulation::last_report() const {
   return parts_->report;
 }

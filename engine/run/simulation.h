@@ -16,6 +16,7 @@
 
 namespace cprsim {
 
+struct Robot;
 struct RobotUnknowns;
 
 /// How a run ended.
@@ -107,6 +108,7 @@ class Simulation {
   double end_time() const;
   const std::string& failure() const;  ///< a sentence for people when status() is kFailed
   const SolveReport& last_report() const;
+  const Robot& robot() const;  ///< as it now stands
   const RunStatistics& statistics() const;
 
   /// State at the end of the last step.

@@ -117,8 +117,7 @@ MatX condensed_stiffness(const RobotVariation& v) {
   return S;
 }
 
-Stability count_unstable(const StaticStudy& study) {
-  const Robot& robot = study.robot();
+Stability count_unstable(const Robot& robot) {
   const RobotVariation v = robot_variation(robot, Inertia::kMetric);
   Stability out;
   out.potential = v.potential;

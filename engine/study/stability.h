@@ -45,6 +45,6 @@ MatX condensed_stiffness(const RobotVariation& variation);
 Stability judge(const StaticStudy& study);
 
 /// Only the verdict and counts, an order of magnitude faster: for sweeps.
-Stability count_unstable(const StaticStudy& study);
+Stability count_unstable(const Robot& robot);
 
 }  // namespace cprsim

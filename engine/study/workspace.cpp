@@ -165,7 +165,7 @@ void WorkspaceSolver::inverse(WorkspacePoint& point) {
 }
 
 void WorkspaceSolver::tell(WorkspacePoint& point) {
-  const Stability stability = count_unstable(study_);
+  const Stability stability = count_unstable(study_.robot());
   point.verdict = stability.verdict;
   point.unstable = stability.unstable;
   for (const Parameter& drive : study_.drives())

@@ -249,7 +249,7 @@ TEST(CoincidentEnds, GiveALoop) {
     StaticStudy study(scene);
     ASSERT_TRUE(study.solve().converged()) << cells;
     const RodSample rod = study.snapshot().rods[0];
-    EXPECT_EQ(count_unstable(study).unstable, 0) << cells;
+    EXPECT_EQ(count_unstable(study.robot()).unstable, 0) << cells;
     measure("gap / L, " + std::to_string(cells) + " cells",
             (rod.points.back().position - rod.points.front().position).norm() / kLength, 1e-9);
   }

@@ -113,6 +113,18 @@ TEST_F(Cprsim, SuggestsCommandsAndOptionsAndAnswersTwo) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+TEST_F(Cprsim, SaysWhenAnEquilibriumIsUnstable) {
+  const std::string scene = std::string(CPRSIM_SOURCE_DIR) + "/scenes/paths/euler_column.xml";
+  const Outcome below = run(scene + " --set 'column/load/force#3=-4.1'");  // P_E is 4.1123 N
+  EXPECT_EQ(below.code, 0) << below.err;
+  EXPECT_TRUE(has(below.out, "stable static equilibrium")) << below.out;
+  EXPECT_FALSE(has(below.out + below.err, "unstable"));
+  const Outcome above = run(scene + " --set 'column/load/force#3=-4.12'");
+  EXPECT_EQ(above.code, 0) << above.err;
+  EXPECT_TRUE(has(above.out, "unstable static equilibrium")) << above.out;
+  EXPECT_TRUE(has(above.err, "unstable in 1 direction:")) << above.err;
+}
+
 TEST_F(Cprsim, RunsAFileNamedFirstOrAfterRunOrAfterAnOption) {
   for (const char* words : {"swing.xml --no-video", "run swing.xml --no-video",
                             "--no-video swing.xml", "-q run swing.xml", "run - < swing.xml"}) {

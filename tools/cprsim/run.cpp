@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "engine/math/state_text.h"
+#include "engine/study/stability.h"
 #include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/commands.h"
@@ -118,6 +119,17 @@ int exit_code_of(const Run& run) {
   return std::any_of(results.begin(), results.end(), fails) ? kExitExpectationFailed : kExitDone;
 }
 
+/// Newton's method finds unstable equilibria as readily as stable ones: say which it was. What
+/// obstacles hold back is not counted.
+void judge_stability(Run& run, const Simulation& simulation) {
+  if (run.scene.simulation.mode != Mode::kStatic || run.report.end != RunEnd::kDone ||
+      run.scene.rods.empty() || !simulation.has_visitable_state())
+    return;
+  const Stability found = count_unstable(simulation.robot());
+  run.report.stability = to_string(found.verdict);
+  run.report.unstable_directions = found.unstable;
+}
+
 void conclude(Run& run, const Simulation& simulation, const Outputs& outputs,
               const StateFiles& states) {
   RunReport& report = run.report;
@@ -149,6 +161,11 @@ void show(const Run& run) {
   if (run.console.json()) write_to_stdout(to_json(run.scene, report));
   if (report.end == RunEnd::kDone) {
     run.console.say(to_summary(run.scene, report, run.folder.string()));
+    if (report.unstable_directions > 0)
+      run.console.warn(fmt::format(
+          "the equilibrium is unstable in {} direction{}: the robot would not stay there; `cprsim "
+          "path` and `cprsim solve` tell more",
+          report.unstable_directions, report.unstable_directions == 1 ? "" : "s"));
     if (report.exit_code != kExitDone) run.console.error("not all expectations are met");
     return;
   }
@@ -188,7 +205,10 @@ int run_to_accuracy(Run& run) {
     const bool judge = control.asked() && run.report.end == RunEnd::kDone;
     again = judge && control.refine(simulation->statistics().section_evaluations);
     if (judge) run.report.accuracy = control.report();
-    if (again) run.report.end = RunEnd::kRunning;
+    if (again)
+      run.report.end = RunEnd::kRunning;
+    else
+      judge_stability(run, *simulation);
   }
   run.write_report();
   show(run);

@@ -216,6 +216,9 @@ std::string to_json(const Scene& scene, const RunReport& report) {
   for (const WrittenFile& file : report.files) {
     json["files"].push_back({{"name", file.name}, {"kind", file.kind}, {"count", file.count}});
   }
+  if (!report.stability.empty())
+    json["stability"] = {{"verdict", report.stability},
+                         {"unstable_directions", report.unstable_directions}};
   if (report.accuracy) {
     const AccuracyReport& accuracy = *report.accuracy;
     json["accuracy"] = {{"asked", accuracy.asked},

@@ -49,6 +49,8 @@ struct RunReport {
   SolveReport last_solve;
   std::vector<std::string> likely_causes;
   Extremes extremes;
+  std::string stability;  ///< of a static equilibrium: stable, unstable, singular; or empty
+  int unstable_directions = 0;
   std::optional<AccuracyReport> accuracy;  ///< if one was asked for
   std::vector<Diagnostic> diagnostics;
   std::vector<ExpectResult> expectations;

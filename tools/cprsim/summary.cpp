@@ -19,8 +19,9 @@ std::string speed_of(double factor) {
 std::string first_line(const RunReport& report) {
   const RunStatistics& statistics = report.statistics;
   if (report.end_time <= 0) {
-    return fmt::format("{}: static equilibrium found in {:.3g} s, {} iterations\n", report.label,
-                       statistics.start_seconds, report.last_solve.iterations);
+    const std::string kind = report.stability.empty() ? "" : report.stability + " ";
+    return fmt::format("{}: {}static equilibrium found in {:.3g} s, {} iterations\n", report.label,
+                       kind, statistics.start_seconds, report.last_solve.iterations);
   }
   return fmt::format("{}: {:.3f} s simulated in {:.3g} s ({}), {} steps, {} rejected\n",
                      report.label, report.time, statistics.start_seconds + statistics.step_seconds,

@@ -27,7 +27,7 @@ double critical_force(Scene scene, double low, double high) {
     StaticStudy study(scene);
     EXPECT_TRUE(study.solve().converged()) << middle;
     const Stability judged = judge(study);
-    EXPECT_EQ(judged.verdict, count_unstable(study).verdict);
+    EXPECT_EQ(judged.verdict, count_unstable(study.robot()).verdict);
     (judged.verdict == StabilityVerdict::kStable ? low : high) = middle;
   }
   return 0.5 * (low + high);
