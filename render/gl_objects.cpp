@@ -88,10 +88,10 @@ GlName make_texture(const Gl& gl, GLint format, int width, int height, int sampl
   const GLenum type = format == GL_RGBA8 ? GL_UNSIGNED_BYTE : GL_FLOAT;
   gl.BindTexture(GL_TEXTURE_2D, texture);
   gl.TexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, channels, type, nullptr);
-  for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+  for (const GLenum filter : {GLenum{GL_TEXTURE_MIN_FILTER}, GLenum{GL_TEXTURE_MAG_FILTER}}) {
     gl.TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
   }
-  for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) {
+  for (const GLenum wrap : {GLenum{GL_TEXTURE_WRAP_S}, GLenum{GL_TEXTURE_WRAP_T}}) {
     gl.TexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
   }
   return texture;

@@ -36,7 +36,7 @@ GlTextures::GlTextures(const Gl& gl, int w, int h, int shadow_size)
     gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl.SamplerParameteri(sampler, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   }
-  for (GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+  for (const GLenum filter : {GLenum{GL_TEXTURE_MIN_FILTER}, GLenum{GL_TEXTURE_MAG_FILTER}}) {
     gl.SamplerParameteri(compare, filter, GL_LINEAR);
     gl.SamplerParameteri(levels, filter, GL_LINEAR);
   }
