@@ -119,6 +119,7 @@ MatX kernel_of(const MatX& C, double threshold) {
   Eigen::ColPivHouseholderQR<MatX> qr(C.transpose());
   qr.setThreshold(threshold);
   const Eigen::Index free = n - qr.rank();
+  if (free == 0) return MatX(n, 0);  // Eigen would step from a null pointer
   MatX Z = MatX::Zero(n, free);
   Z.bottomRows(free).setIdentity();
   return qr.householderQ() * Z;
@@ -128,6 +129,7 @@ MatX onto_kernel(const MatX& C, double threshold, const MatX& A) {
   if (C.rows() == 0) return A;
   Eigen::ColPivHouseholderQR<MatX> qr(C.transpose());
   qr.setThreshold(threshold);
+  if (A.cols() == 0) return MatX(C.cols() - qr.rank(), 0);
   MatX turned = A;
   turned.applyOnTheLeft(qr.householderQ().adjoint());
   return turned.bottomRows(C.cols() - qr.rank());
