@@ -21,7 +21,6 @@ static_assert(sizeof(btScalar) == 8, "needs Bullet in double precision");
 namespace cprsim {
 namespace {
 
-constexpr double kU = kUnitsPerMetre;
 constexpr double kNotice = 0.02;  // Bullet's: distance at which contacts are found, over the size
 
 /// Only pairs that may touch reach the narrow phase.

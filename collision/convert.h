@@ -12,7 +12,7 @@ namespace cprsim {
 /// World units per metre. In millimetres, without margins, double precision finds gaps to 3e-10 m;
 /// in metres the absolute tolerances inside Bullet's GJK miss a tenth of the contacts of small
 /// shapes.
-constexpr double kUnitsPerMetre = 1000;
+constexpr double kUnitsPerMetre = 1000, kU = kUnitsPerMetre;
 
 btVector3 to_bullet(const Vec3& v);
 btTransform to_bullet(const Pose& X);

@@ -11,8 +11,6 @@
 namespace cprsim {
 namespace {
 
-constexpr double kU = kUnitsPerMetre;
-
 /// Principal moments and axes; a matrix that is diagonal already keeps its axes.
 void find_principal_axes(const Mat3& inertia, FreeBody& free) {
   free.inertia = kU * kU * inertia.diagonal();

@@ -7,11 +7,7 @@
 #include "engine/math/so3.h"
 
 namespace cprsim {
-namespace {
-
-constexpr double kU = kUnitsPerMetre;
-
-}  // namespace
+namespace {}  // namespace
 
 Obstacle::Obstacle() = default;
 Obstacle::Obstacle(Obstacle&&) noexcept = default;

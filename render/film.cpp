@@ -24,7 +24,7 @@ namespace cprsim {
 
 namespace {
 
-const char* const kInstall = "films need the ffmpeg program: install the Debian package ffmpeg";
+const char* const kNeedsFfmpeg = "films need the ffmpeg program: install the Debian package ffmpeg";
 
 std::string find_program(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -110,7 +110,7 @@ int wait_for(int process) {
 }  // namespace
 
 std::string film_unavailable() {
-  return find_program("ffmpeg").empty() ? kInstall : "";
+  return find_program("ffmpeg").empty() ? kNeedsFfmpeg : "";
 }
 
 Film::Film() = default;
@@ -122,7 +122,7 @@ Film::~Film() {
 void Film::open(const std::string& path, int width, int height, double fps) {
   abandon();
   const std::string program = find_program("ffmpeg");
-  if (program.empty()) throw std::runtime_error(path + ": " + kInstall);
+  if (program.empty()) throw std::runtime_error(path + ": " + kNeedsFfmpeg);
   if (width < 2 || height < 2 || !(fps > 0)) {
     throw std::runtime_error(path + ": a film needs a size of 2 pixels and a positive frame rate");
   }

@@ -9,7 +9,6 @@ namespace cprsim {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kSmallestWidth = 1.2;  // pixels; with 4 samples a thinner line breaks into dots
 
 /// A point of the section's outline and its outward normal, in section axes.
@@ -20,7 +19,7 @@ struct OutlinePoint {
 std::vector<OutlinePoint> ellipse(double a, double b, int sides) {
   std::vector<OutlinePoint> outline;
   for (int k = 0; k <= sides; ++k) {
-    const double t = 2 * kPi * k / sides, c = std::cos(t), s = std::sin(t);
+    const double t = 2 * std::numbers::pi * k / sides, c = std::cos(t), s = std::sin(t);
     outline.push_back({{a * c, b * s}, Vec2(b * c, a * s).normalized()});
   }
   return outline;
@@ -89,7 +88,7 @@ void sweep_front(const Tube& tube, const View& view, int faces, TriMesh& mesh) {
     const double r = std::max(tube.radius, 0.5 * kSmallestWidth * view.pixel_size(ring.position));
     const auto color = to_bytes(ring.color, tube.look.opacity);
     for (std::uint32_t k = 0; k < n; ++k) {
-      const double a = kPi * k / faces;
+      const double a = std::numbers::pi * k / faces;
       const Vec3 normal = std::cos(a) * side + std::sin(a) * front;
       mesh.vertices.push_back(
           {(ring.position + r * normal).cast<float>(), normal.cast<float>(), color});

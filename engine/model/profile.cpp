@@ -11,12 +11,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace cprsim {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // whether t lies after `instant`, seen from the right, or from the left if `before`
 bool reached(double t, double instant, bool before) {
@@ -43,7 +42,7 @@ ProfileValue smoothstep(const ProfileTerm& term, double t) {
 
 ProfileValue sine(const ProfileTerm& term, double t, bool before) {
   if (!reached(t, term.start, before) || reached(t, term.end, before)) return {};
-  const double w = 2 * kPi * term.frequency;
+  const double w = 2 * std::numbers::pi * term.frequency;
   const double angle = w * (t - term.start) + term.phase;
   const double s = term.amplitude * std::sin(angle), c = term.amplitude * std::cos(angle);
   return {s, w * c, -w * w * s};

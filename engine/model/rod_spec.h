@@ -3,6 +3,7 @@
 // base → tip; arc length is that of the unloaded rod.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,13 +67,17 @@ struct RodSpec {
   SectionSpec section;
   std::optional<MaterialSpec> material;
   StiffnessSpec stiffness;
-  Vec3 rest_curvature =
-      Vec3::Zero();  ///< bending about x and y, twist: of the unloaded rod, section axes, 1/m
+  /// Bending about x and y, twist: of the unloaded rod, section axes, 1/m.
+  Vec3 rest_curvature = Vec3::Zero();
   std::optional<DampingSpec> damping;
   bool gravity = true;
   SurfaceSpec surface;
   std::vector<std::string> without;  ///< effects switched off for this rod
   Look look;
+
+  bool lacks(const std::string& effect) const {
+    return std::find(without.begin(), without.end(), effect) != without.end();
+  }
 };
 
 }  // namespace cprsim

@@ -12,6 +12,10 @@ namespace cprsim {
 enum class Mode { kStatic, kQuasistatic, kDynamic };
 /// How a rod is discretised.
 enum class Method { kAuto, kShooting, kStrain, kCollocation };
+
+/// As scenes call it.
+const char* method_name(Method method);
+
 enum class ArcIntegrator { kEuler, kRk4, kGauss2, kGauss4, kGauss6 };
 enum class SchemeKind {
   kBackwardEuler,

@@ -128,14 +128,10 @@ void add_joints(Robot& robot) {
   }
 }
 
-bool off_for(const RodSpec& rod, const char* effect) {
-  return std::find(rod.without.begin(), rod.without.end(), effect) != rod.without.end();
-}
-
 RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   const Scene& scene = *robot.scene;
   const auto has = [&](Effect e) {
-    return scene.effects.has(e) && !off_for(*rod.spec, effect_name(e));
+    return scene.effects.has(e) && !rod.spec->lacks(effect_name(e));
   };
   RodPlan plan;
   plan.spec = rod.spec;
@@ -170,7 +166,7 @@ void add_rods(Robot& robot) {
       if (drive.rod == static_cast<int>(i)) rod.length_drive = &drive.profile;
     for (const LoadSpec& load : scene.loads)
       if (load.rod == static_cast<int>(i)) rod.loads.push_back(&load);
-    rod.gravity = spec.gravity && !off_for(spec, "gravity");
+    rod.gravity = spec.gravity && !spec.lacks("gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);
     rod.choice = choose_method(plan);

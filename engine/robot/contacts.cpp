@@ -18,10 +18,6 @@ double order(const RodContact& contact) {
   return static_cast<double>(contact.cell) + (contact.at_node() ? 0 : 0.5);
 }
 
-bool off_for(const RodSpec& rod, const char* effect) {
-  return std::find(rod.without.begin(), rod.without.end(), effect) != rod.without.end();
-}
-
 bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b) {
   return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
 }
@@ -37,7 +33,7 @@ RodContacts::RodContacts(Robot& robot) : robot_(robot) {
     mine.rod = &rod;
     mine.side = rod.model->touching();
     mine.radius = rod.section.half_width;
-    if (off_for(*rod.spec, "contact")) continue;
+    if (rod.spec->lacks("contact")) continue;
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       if (robot.links[i].body != LinkPlace::kGround) continue;

@@ -10,13 +10,13 @@
 namespace cprsim {
 namespace {
 
-constexpr double kDifference = 1e-7;  // of y, in its units: of single Newton steps
-constexpr double kLargestDifference = 1e-4, kSmallestPart = 1e-13;
-constexpr int kIterations = 10;
-constexpr double kRows = 1e-11;      // of the goal, in units in which 1 is large
-constexpr double kPlane = 1e-9;      // of the arclength row: where on the path matters little
-constexpr double kFarthest = 0.5;    // a correction longer than this part of the step is refused
-constexpr double kSingular = 1e-15;  // smallest pivot of the small system
+constexpr double kSmallDifference = 1e-7;  // of y, in its units: of single Newton steps
+constexpr double kLargestDifference = 1e-4, kLeastDifference = 1e-13;
+constexpr int kCorrections = 10;
+constexpr double kRows = 1e-11;        // of the goal, in units in which 1 is large
+constexpr double kPlane = 1e-9;        // of the arclength row: where on the path matters little
+constexpr double kFarthest = 0.5;      // a correction longer than this part of the step is refused
+constexpr double kLeastPivot = 1e-15;  // smallest pivot of the small system
 
 }  // namespace
 
@@ -130,7 +130,7 @@ bool PathSystem::linearize(const VecX& y, PathStation& at) {
   for (Eigen::Index i = 0; i < y.size(); ++i) {
     // lambda of a prescribed pose moves no part of the robot
     const bool acts = !(problem_.free_drives && i + 1 == y.size());
-    for (double part = kDifference;;) {
+    for (double part = kSmallDifference;;) {
       VecX side = y;
       side[i] += part * problem_.units[i];
       at.differences[i] = side[i] - y[i];
@@ -143,7 +143,7 @@ bool PathSystem::linearize(const VecX& y, PathStation& at) {
       // near singular points little changes much: differences stay where motions add
       const double moves = motion(at.sides.back(), at.sides.front()).norm();
       if (!std::isfinite(moves)) return false;
-      if (moves <= kLargestDifference || part < kSmallestPart) break;
+      if (moves <= kLargestDifference || part < kLeastDifference) break;
       part *= std::max(0.1 * kLargestDifference / moves, 1e-3);
     }
   }
@@ -170,7 +170,7 @@ bool PathSystem::solve_small(const PathStation& at, const StaticStudy::State& or
     A.col(i).head(n - 1) = (side_rows_[k] - side_rows_[0]) / h;
     A(n - 1, i) = normal.u.dot(du) + normal.y[i];
   }
-  if (!solve_square(A, -b, kSingular, dy) || !dy.allFinite()) return false;
+  if (!solve_square(A, -b, kLeastPivot, dy) || !dy.allFinite()) return false;
   dy = dy.cwiseProduct(problem_.units);
   return true;
 }
@@ -214,7 +214,7 @@ bool PathSystem::correct(const StaticStudy::State& origin, const VecX& origin_y,
                          const PathDirection& normal, double sigma, VecX y,
                          const PathDirection& along, PathStation& to) {
   put(study_.state(), y);
-  for (iterations_ = 0; iterations_ < kIterations; ++iterations_) {
+  for (iterations_ = 0; iterations_ < kCorrections; ++iterations_) {
     const ProblemResidual r = study_.equations().evaluate();
     if (!r.finite) return false;
     const VecX g = problem_.rows(study_, y);

@@ -12,10 +12,6 @@ namespace cprsim {
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 const Node& node_of_body(const Reading& r, std::size_t body) {
   return *r.frames.vertices()[at(r.frames.link_of(static_cast<int>(body)))].node;
 }

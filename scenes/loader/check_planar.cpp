@@ -13,10 +13,6 @@ namespace {
 
 constexpr const char* kCode = "E511";
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 class PlanarCheck {
  public:
   PlanarCheck(Reading& r, const Vec3& normal) : r_(r), scene_(r.scene), normal_(normal) {}

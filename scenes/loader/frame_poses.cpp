@@ -6,16 +6,9 @@
 #include "scenes/loader/frames.h"
 #include "scenes/loader/reporter.h"
 #include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
 
 namespace cprsim {
-
-namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 int FrameGraph::resolve(int scope, std::string_view name, const Node& where, const char* key,
                         bool world) {

@@ -12,10 +12,6 @@ namespace cprsim {
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 Mat3 read_quaternion(const std::vector<double>& x, const Node& pose, Reporter& report) {
   constexpr double kExact = 1e-9, kNormalisable = 0.1;
   Quat q(x[6], x[3], x[4], x[5]);

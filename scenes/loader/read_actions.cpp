@@ -11,10 +11,6 @@ namespace cprsim {
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 // a named profile or the shapes inside; false if neither is given
 bool read_time_function(Reading& r, const Node& node, Profile& profile) {
   const Attribute* name = node.attribute("profile");

@@ -13,10 +13,6 @@ namespace cprsim {
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 Vec3 color_of(const Node* node, const Vec3& fallback, double* alpha = nullptr) {
   const auto numbers = node ? parse_numbers(node->text) : std::nullopt;
   if (!numbers || numbers->size() < 3) return fallback;

@@ -12,10 +12,6 @@ namespace cprsim {
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 // a side of a joint: a vertex, or -1 after an error
 int side(Reading& r, const Node& joint, int scope, const char* element) {
   const Node* node = joint.child(element);

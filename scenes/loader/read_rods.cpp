@@ -14,10 +14,6 @@ namespace cprsim {
 
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 using Chain = std::vector<const Node*>;  ///< the rod, its class, that class's class, ...
 
 const Node* find_class(const Reading& r, int scope, std::string_view name,

@@ -2,29 +2,22 @@
 // Targets: poses to which `cprsim solve` brings a frame.
 #include <algorithm>
 #include <numeric>
-#include <sstream>
 
 #include "scenes/loader/reading.h"
 #include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
 
 namespace cprsim {
 
 namespace {
-
-std::vector<std::string> words_of(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;)
-    words.push_back(word);
-  return words;
-}
 
 void read_freedoms(Reading& r, const Node& node, TargetSpec& target) {
   const Attribute* attribute = node.attribute("freedoms");
   if (!attribute) return;
   const std::vector<std::string> names = {"x", "y", "z", "roll", "pitch", "yaw"};
   target.asked.fill(false);
-  for (const std::string& word : words_of(attribute->value)) {
+  for (const std::string_view text : split_words(attribute->value)) {
+    const std::string word(text);
     const auto found = std::find(names.begin(), names.end(), word);
     if (found == names.end())
       r.report.bad_value("E307", node, *attribute, "'" + word + "' is not a freedom of a frame",
@@ -59,7 +52,8 @@ void read_drives(Reading& r, const Node& node, int scope, TargetSpec& target) {
     std::iota(target.drives.begin(), target.drives.end(), 0);
     return;
   }
-  for (const std::string& word : words_of(attribute->value)) {
+  for (const std::string_view text : split_words(attribute->value)) {
+    const std::string word(text);
     const auto named = r.frames.find_outwards(scope, word);
     const std::vector<int> drives = named ? drives_of(r, *named) : std::vector<int>{};
     if (!named)

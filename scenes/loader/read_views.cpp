@@ -10,10 +10,6 @@ namespace {
 
 constexpr int kLargestImage = 8192;
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
 Vec3 color(const Node* node, const Vec3& fallback) {
   const auto numbers = node ? parse_numbers(node->text) : std::nullopt;
   if (!numbers || numbers->size() < 3) return fallback;

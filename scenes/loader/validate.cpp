@@ -19,8 +19,8 @@ struct Verdict {
 };
 
 std::string quoted(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  if (text.size() > kLongest) return "'" + std::string(text.substr(0, kLongest)) + "...'";
+  constexpr std::size_t kShown = 60;
+  if (text.size() > kShown) return "'" + std::string(text.substr(0, kShown)) + "...'";
   return "'" + std::string(text) + "'";
 }
 

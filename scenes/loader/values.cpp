@@ -38,6 +38,17 @@ std::vector<std::string_view> split_words(std::string_view text) {
   return words;
 }
 
+std::vector<std::string> split(std::string_view text, char at) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == at)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
 std::optional<double> parse_number(std::string_view text, bool allow_infinite) {
   text = trim(text);
   if (allow_infinite && (text == "inf" || text == "INF" || text == "+inf")) return HUGE_VAL;

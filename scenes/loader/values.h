@@ -3,6 +3,7 @@
 // machine's language settings have no influence.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,10 +13,19 @@
 
 namespace cprsim {
 
+/// An index of the scene, which counts from 0 and has -1 for nothing, as the library's lists want
+/// it.
+inline std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
 std::string_view trim(std::string_view text);
 
 /// Pieces between white space.
 std::vector<std::string_view> split_words(std::string_view text);
+
+/// Pieces between occurrences of `at`; one piece, perhaps empty, if there is none.
+std::vector<std::string> split(std::string_view text, char at);
 
 /// A finite number; infinities only if allowed. Empty if the text is anything else.
 std::optional<double> parse_number(std::string_view text, bool allow_infinite = false);

@@ -11,10 +11,6 @@ namespace {
 
 class EveryMethodMoving : public ::testing::TestWithParam<Method> {};
 
-std::string test_name(const ::testing::TestParamInfo<Method>& of) {
-  return name_of(of.param);
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethodMoving, ::testing::ValuesIn(kEveryMethod), test_name);
 
 Snapshot end_of(const Scene& scene) {

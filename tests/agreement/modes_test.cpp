@@ -32,9 +32,9 @@ TEST(Modes, OfABentRodAreThoseOfEveryMethod) {
   ASSERT_EQ(expected.size(), 4u);
   for (Method method : {Method::kStrain, Method::kCollocation}) {
     const std::vector<double> found = frequencies(finely(scene, method));
-    ASSERT_EQ(found.size(), expected.size()) << name_of(method);
+    ASSERT_EQ(found.size(), expected.size()) << method_name(method);
     for (std::size_t k = 0; k < found.size(); ++k)
-      EXPECT_NEAR(found[k] / expected[k], 1, 2e-6) << name_of(method) << ", mode " << k;
+      EXPECT_NEAR(found[k] / expected[k], 1, 2e-6) << method_name(method) << ", mode " << k;
   }
 }
 

@@ -29,10 +29,6 @@ class EveryMethod : public ::testing::TestWithParam<Method> {
   Scene fine(const Scene& scene) const { return finely(scene, GetParam()); }
 };
 
-std::string test_name(const ::testing::TestParamInfo<Method>& of) {
-  return name_of(of.param);
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, ::testing::ValuesIn(kEveryMethod), test_name);
 
 TEST_P(EveryMethod, RollsACantileverUpToACircle) {

@@ -57,10 +57,6 @@ MatX stiffness(RodModel& rod, const Ends& ends) {
 
 class TwoPort : public ::testing::TestWithParam<Method> {};
 
-std::string test_name(const ::testing::TestParamInfo<Method>& of) {
-  return name_of(of.param);
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, TwoPort, ::testing::ValuesIn(kEveryMethod), test_name);
 
 TEST_P(TwoPort, IsTheDerivativeOfTheEndWrenches) {

@@ -131,11 +131,11 @@ std::string row(const Case& one, const Fineness& f, int repetitions) {
   char text[200];
   if (found.converged)
     std::snprintf(text, sizeof text, "| %s | %d | %d | %d | %.1e | %d | %.0f |\n",
-                  name_of(f.method).c_str(), f.pieces, f.order, found.unknowns,
+                  method_name(f.method), f.pieces, f.order, found.unknowns,
                   (found.point - one.exact).norm() / one.length, found.iterations, least);
   else
     std::snprintf(text, sizeof text, "| %s | %d | %d | %d | not found | | |\n",
-                  name_of(f.method).c_str(), f.pieces, f.order, found.unknowns);
+                  method_name(f.method), f.pieces, f.order, found.unknowns);
   return text;
 }
 

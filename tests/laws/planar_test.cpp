@@ -61,7 +61,7 @@ void expect_same(const Snapshot& a, const Snapshot& b, double tolerance) {
 
 /// Runs a scene to its end in both kernels. Statics is one instant.
 void expect_agreement_of(Method method, Scene scene, const Plane& plane, double tolerance) {
-  SCOPED_TRACE(name_of(method));
+  SCOPED_TRACE(method_name(method));
   scene.solver.method = method;
   scene.solver.residual_tolerance = 1e-12;
   Simulation spatial(scene), planar(in_plane(scene, plane));

@@ -2,8 +2,9 @@
 // Every discretisation of a rod, for tests that hold for all of them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
-#include <vector>
 
 #include "engine/model/scene.h"
 
@@ -11,18 +12,9 @@ namespace cprsim {
 
 inline constexpr Method kEveryMethod[] = {Method::kShooting, Method::kStrain, Method::kCollocation};
 
-inline std::string name_of(Method method) {
-  switch (method) {
-    case Method::kAuto:
-      return "auto";
-    case Method::kShooting:
-      return "shooting";
-    case Method::kStrain:
-      return "strain";
-    case Method::kCollocation:
-      return "collocation";
-  }
-  return "";
+/// The name of a test that is done with each.
+inline std::string test_name(const ::testing::TestParamInfo<Method>& of) {
+  return method_name(of.param);
 }
 
 /// The scene with rods cut so finely, by this method, that 1e-9 of their length is left of errors

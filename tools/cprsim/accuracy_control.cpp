@@ -128,15 +128,7 @@ void AccuracyControl::fly_pilot(const std::function<bool()>& stop) {
     scene.solver.order = std::max(1, order - 1);
   }
   pilot_.emplace(scene);
-  const QuietRun run = run_quietly(
-      scene,
-      [&](const Snapshot& before, const Snapshot& now) {
-        if (&before == &now)
-          pilot_->begin(now);
-        else
-          pilot_->step(before, now);
-      },
-      stop);
+  const QuietRun run = run_quietly(scene, onlooker(*pilot_), stop);
   ++report_.runs;
   report_.evaluations += run.statistics.section_evaluations;
 }

@@ -5,27 +5,17 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cmath>
+#include <limits>
 #include <map>
 
 #include "scenes/loader/suggest.h"
+#include "scenes/loader/values.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/sinks/output_file.h"
 
 namespace cprsim {
 
 namespace {
-
-/// The whole of a text as a number, whatever the locale says about commas.
-template <typename T>
-std::optional<T> to_number(const std::string& text) {
-  T value{};
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc{} || result.ptr != end) return std::nullopt;
-  return value;
-}
 
 template <typename Enum>
 void add_choice(CommandLine& line, const std::string& name, Enum& value, const std::string& help,
@@ -139,18 +129,18 @@ void CommandLine::number(const std::string& name, std::optional<double>& value,
                          const std::string& help, const std::string& demand,
                          const std::function<bool(double)>& fits) {
   one(name, "NUMBER", help, [&value, demand, fits](const std::string& text) {
-    value = to_number<double>(text);
-    if (!value || !std::isfinite(*value) || !fits(*value))
+    value = parse_number(text);
+    if (!value || !fits(*value))
       throw UsageError(fmt::format("'{}' is not a number {}", text, demand));
   });
 }
 
 void CommandLine::count(const std::string& name, int& value, int least, const std::string& help) {
   one(name, "N", help, [&value, least](const std::string& text) {
-    const auto number = to_number<int>(text);
-    if (!number || *number < least)
+    const auto number = parse_integer(text);
+    if (!number || *number < least || *number > std::numeric_limits<int>::max())
       throw UsageError(fmt::format("'{}' is not a whole number from {} on", text, least));
-    value = *number;
+    value = static_cast<int>(*number);
   });
 }
 
@@ -209,7 +199,9 @@ void add_console_options(CommandLine& line, ConsoleOptions& options) {
 }
 
 std::optional<unsigned> whole_number(const std::string& text) {
-  return to_number<unsigned>(text);
+  const auto number = parse_integer(text);
+  if (!number || *number < 0 || *number > std::numeric_limits<unsigned>::max()) return std::nullopt;
+  return static_cast<unsigned>(*number);
 }
 
 std::string not_one_of(const std::string& word, const std::string& noun,

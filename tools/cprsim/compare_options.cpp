@@ -24,17 +24,6 @@ constexpr const char* kAbout =
     "  cprsim compare a.csv b.csv --of robot::platform.position --rms 1e-4 --json\n"
     "Exit code 1 if a limit of --rms or --max is not kept.";
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts{""};
-  for (const char c : text) {
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
 ErrorLimit limit_of(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   ErrorLimit limit;
@@ -48,7 +37,7 @@ ErrorLimit limit_of(const std::string& text) {
 
 Pose frame_of(const std::string& text) {
   std::vector<double> numbers;
-  for (const std::string& part : split(text)) {
+  for (const std::string& part : split(text, ',')) {
     const bool degrees = part.ends_with("deg");
     const auto number = parse_number(degrees ? part.substr(0, part.size() - 3) : part);
     if (!number || (degrees && numbers.size() < 3))
@@ -63,7 +52,7 @@ Pose frame_of(const std::string& text) {
 void add_frame_options(CommandLine& line, CompareOptions& options) {
   line.each("--ref-units", "UNITS", "Of columns that name none, e.g. mm (default SI)",
             [&options](const std::string& text) {
-              for (const std::string& unit : split(text)) {
+              for (const std::string& unit : split(text, ',')) {
                 if (!si_unit(unit)) throw UsageError("'" + unit + "' is no known unit");
                 options.reference_units.push_back(unit);
               }

@@ -48,21 +48,12 @@ std::string FitOption::name() const {
 std::variant<FitOption, std::string> parse_fit_option(const std::string& text) {
   FitOption option;
   const std::size_t equals = text.find('=');
-  const std::string paths = text.substr(0, equals);
-  for (std::size_t at = 0; at <= paths.size();) {
-    const std::size_t end = std::min(paths.find(',', at), paths.size());
-    option.paths.emplace_back(trim(paths.substr(at, end - at)));
+  for (const std::string& path : split(text.substr(0, equals), ',')) {
+    option.paths.emplace_back(trim(path));
     if (option.paths.back().empty()) return "'" + text + "' names no path";
-    at = end + 1;
   }
   if (equals == std::string::npos) return option;
-  std::vector<std::string> numbers(1);
-  for (const char c : text.substr(equals + 1)) {
-    if (c == ':')
-      numbers.emplace_back();
-    else
-      numbers.back() += c;
-  }
+  const std::vector<std::string> numbers = split(text.substr(equals + 1), ':');
   if (numbers.size() != 1 && numbers.size() != 3)
     return "'" + text + "' is not of the form PATH=START or PATH=START:LOW:HIGH";
   std::optional<double>* const targets[] = {&option.start, &option.low, &option.high};

@@ -41,15 +41,7 @@ QuietRun run_once(const Scene& scene, const Looking& looking, MeasuredRun& resul
   const double end = scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration;
   SeriesRecorder recorder(scene, channels_named(scene, looking.channels),
                           looking.instants.value_or(evenly(end)));
-  const QuietRun run = run_quietly(
-      scene,
-      [&](const Snapshot& before, const Snapshot& now) {
-        if (&before == &now)
-          recorder.begin(now);
-        else
-          recorder.step(before, now);
-      },
-      stop);
+  const QuietRun run = run_quietly(scene, onlooker(recorder), stop);
   result.series = recorder.series();
   return run;
 }

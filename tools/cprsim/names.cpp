@@ -17,20 +17,6 @@ const char* mode_name(Mode mode) {
   return "";
 }
 
-const char* method_name(Method method) {
-  switch (method) {
-    case Method::kAuto:
-      return "auto";
-    case Method::kShooting:
-      return "shooting";
-    case Method::kStrain:
-      return "strain";
-    case Method::kCollocation:
-      return "collocation";
-  }
-  return "";
-}
-
 std::string pieces_text(const RodFacts& rod) {
   std::string text = std::string(method_name(rod.method)) + ", ";
   if (rod.method == Method::kShooting)

@@ -10,7 +10,6 @@
 namespace cprsim {
 
 const char* mode_name(Mode mode);
-const char* method_name(Method method);
 
 /// "shooting, 6 points of gauss6"
 std::string pieces_text(const RodFacts& rod);

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kInstants = 1000;
+constexpr int kSamples = 1000;
 
 struct PlotOptions {
   ConsoleOptions console;
@@ -88,28 +88,30 @@ PlotSource simulate(const Scene& scene, const std::string& label, const PlotOpti
                     std::vector<RodShape>& shapes) {
   const double end = scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration;
   std::vector<double> instants{0};
-  for (int k = 1; k <= kInstants && end > 0; ++k)
-    instants.push_back(end * k / kInstants);
+  for (int k = 1; k <= kSamples && end > 0; ++k)
+    instants.push_back(end * k / kSamples);
   SeriesRecorder recorder(scene, channels_for(scene, options), instants);
   int drawn = 0;
   const auto due = [&](double time) {
     return drawn < options.shapes &&
            time >= (options.shapes > 1 ? end * drawn / (options.shapes - 1) : 0) * (1 - 1e-9);
   };
-  const QuietRun run = run_quietly(
-      scene,
-      [&](const Snapshot& before, const Snapshot& now) {
-        if (&before == &now)
-          recorder.begin(now);
-        else
-          recorder.step(before, now);
-        for (; due(now.time); ++drawn) {
-          const double t = options.shapes > 1 ? end * drawn / (options.shapes - 1) : 0;
-          add_shapes(scene, t > before.time && t < now.time ? interpolate(before, now, t) : now, t,
-                     shapes);
-        }
-      },
-      [] { return stop_signal() != 0; });
+  const auto draw = [&](const Snapshot& before, const Snapshot& now) {
+    for (; due(now.time); ++drawn) {
+      const double t = options.shapes > 1 ? end * drawn / (options.shapes - 1) : 0;
+      add_shapes(scene, t > before.time && t < now.time ? interpolate(before, now, t) : now, t,
+                 shapes);
+    }
+  };
+  const Onlooker onlooker{[&](const Snapshot& start) {
+                            recorder.begin(start);
+                            draw(start, start);
+                          },
+                          [&](const Snapshot& before, const Snapshot& now) {
+                            recorder.step(before, now);
+                            draw(before, now);
+                          }};
+  const QuietRun run = run_quietly(scene, onlooker, [] { return stop_signal() != 0; });
   if (run.status == RunStatus::kFailed)
     throw NoEquilibrium(fmt::format("{} failed at t = {:.6g} s: {}", label, run.time, run.failure));
   return {label, recorder.series()};

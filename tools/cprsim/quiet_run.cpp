@@ -43,8 +43,7 @@ std::mutex& bullet_turn() {
 
 }  // namespace
 
-QuietRun run_quietly(const Scene& scene,
-                     const std::function<void(const Snapshot&, const Snapshot&)>& look,
+QuietRun run_quietly(const Scene& scene, const Onlooker& onlooker,
                      const std::function<bool()>& stop) {
   std::unique_lock<std::mutex> turn(bullet_turn(), std::defer_lock);
   if (!find_free_bodies(scene).empty()) turn.lock();
@@ -55,13 +54,14 @@ QuietRun run_quietly(const Scene& scene,
     simulation = build_simulation(scene);
     simulation->start();
   }
-  if (simulation->status() != RunStatus::kFailed) look(simulation->now(), simulation->now());
+  if (simulation->status() != RunStatus::kFailed) onlooker.begin(simulation->now());
   while (simulation->status() == RunStatus::kRunning && !stop()) {
     {
       const CpuTime time(run.cpu_seconds);
       simulation->advance();
     }
-    if (simulation->status() != RunStatus::kFailed) look(simulation->before(), simulation->now());
+    if (simulation->status() != RunStatus::kFailed)
+      onlooker.step(simulation->before(), simulation->now());
   }
   run.status = simulation->status();
   run.failure = simulation->failure();

@@ -18,13 +18,24 @@ struct QuietRun {
   ProblemFacts facts;
 };
 
+/// Who looks at a run: at its start, then at both ends of every step.
+struct Onlooker {
+  std::function<void(const Snapshot&)> begin;
+  std::function<void(const Snapshot&, const Snapshot&)> step;
+};
+
+/// Anything that has begin() and step().
+template <class Recorder>
+Onlooker onlooker(Recorder& recorder) {
+  return {[&](const Snapshot& start) { recorder.begin(start); },
+          [&](const Snapshot& before, const Snapshot& now) { recorder.step(before, now); }};
+}
+
 /// Runs the scene to its end. Scenes with free bodies wait for each other: Bullet counts some of
 /// what it does in variables of the process.
-/// @param look called with the start as both, then with both ends of every step
 /// @param stop asked before every step
 /// @throws std::invalid_argument if the scene asks for what cannot be simulated
-QuietRun run_quietly(const Scene& scene,
-                     const std::function<void(const Snapshot&, const Snapshot&)>& look,
+QuietRun run_quietly(const Scene& scene, const Onlooker& onlooker,
                      const std::function<bool()>& stop);
 
 /// Calls work(0) ... work(count - 1) on `jobs` threads, in any order; 0: as many as there are

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/cprsim/run_options.h"
 
-#include <charconv>
-
+#include "scenes/loader/values.h"
 #include "tools/sinks/csv.h"
 
 namespace cprsim {
@@ -13,10 +12,8 @@ namespace {
 StillOption to_still(const std::string& text) {
   const std::size_t at = text.rfind('@');
   if (at == std::string::npos) return {text, std::nullopt};
-  double time = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data() + at + 1, end, time);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || !(time >= 0)) return {text, std::nullopt};
+  const std::optional<double> time = parse_number(text.substr(at + 1));
+  if (!time || *time < 0) return {text, std::nullopt};
   return {text.substr(0, at), time};
 }
 

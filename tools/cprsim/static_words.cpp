@@ -8,20 +8,6 @@
 #include "scenes/loader/values.h"
 
 namespace cprsim {
-namespace {
-
-std::vector<std::string> parts_of(const std::string& text) {
-  std::vector<std::string> parts{""};
-  for (const char c : text) {
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
-}  // namespace
 
 std::pair<std::string, std::string> split_assignment(const std::string& option,
                                                      const std::string& text) {
@@ -41,7 +27,7 @@ double number_of(const std::string& option, const std::string& text) {
 
 std::vector<double> numbers_of(const std::string& option, const std::string& text) {
   std::vector<double> numbers;
-  for (const std::string& part : parts_of(text))
+  for (const std::string& part : split(text, ','))
     numbers.push_back(number_of(option, part));
   return numbers;
 }
@@ -64,7 +50,7 @@ PoseGoal pose_goal(const Scene& scene, const std::string& text) {
   const auto [name, values] = split_assignment("--pose", text);
   PoseGoal goal;
   goal.at = frame_named(scene, "--pose", name);
-  const std::vector<std::string> parts = parts_of(values);
+  const std::vector<std::string> parts = split(values, ',');
   if (parts.size() != 3 && parts.size() != 6)
     throw UsageError(fmt::format("--pose: '{}' has {} entries, not x,y,z or x,y,z,roll,pitch,yaw",
                                  values, parts.size()));

@@ -27,17 +27,6 @@ constexpr const char* kAbout =
     "  cprsim sweep scene.xml --vary robot::leg_1/length=0.3:0.5:21 --measure "
     "robot::platform.position";
 
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts{""};
-  for (const char c : text) {
-    if (c == at)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
 /// FROM:TO:COUNT[log]; nothing if the text is no range.
 std::optional<std::vector<std::string>> range_of(const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');

@@ -69,15 +69,8 @@ void judge_rejection(const LoadedScene& loaded, TestCase& test) {
 
 void judge_run(const Scene& scene, TestCase& test) {
   Expectations expectations(scene);
-  const QuietRun run = run_quietly(
-      scene,
-      [&](const Snapshot& before, const Snapshot& now) {
-        if (&before == &now)
-          expectations.begin(now);
-        else
-          expectations.step(before, now);
-      },
-      [] { return stop_signal() != 0; });
+  const QuietRun run =
+      run_quietly(scene, onlooker(expectations), [] { return stop_signal() != 0; });
   test.expectations = expectations.results(run.status == RunStatus::kDone);
   const bool met =
       std::all_of(test.expectations.begin(), test.expectations.end(),

@@ -3,9 +3,7 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
-#include <cmath>
-
+#include "scenes/loader/values.h"
 #include "tools/sinks/csv.h"
 
 namespace cprsim {
@@ -27,24 +25,9 @@ constexpr const char* kAbout =
     "there are six drives or more, else they are left free; --hold says otherwise.";
 
 double number(const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) {
-    throw UsageError("'" + text + "' is not a number");
-  }
-  return value;
-}
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts{""};
-  for (const char c : text) {
-    if (c == at)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
+  const std::optional<double> value = parse_number(text);
+  if (!value) throw UsageError("'" + text + "' is not a number");
+  return *value;
 }
 
 VaryOption vary_of(const std::string& text) {

@@ -6,6 +6,7 @@
 
 #include <charconv>
 
+#include "scenes/loader/values.h"
 #include "tools/sinks/csv.h"
 
 namespace cprsim {
@@ -72,16 +73,6 @@ class CellReader {
   std::size_t next_ = 0;
   bool good_ = true;
 };
-
-std::vector<std::string> split_names(const std::string& text) {
-  std::vector<std::string> names;
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t to = std::min(text.find(' ', from), text.size());
-    names.push_back(text.substr(from, to - from));
-    from = to + 1;
-  }
-  return names;
-}
 
 void read_stage(const std::string& word, WorkspacePoint& point) {
   point.origin = word.empty()        ? PointOrigin::kNone
@@ -181,7 +172,9 @@ std::optional<WorkspacePoint> WorkspaceTable::read(const std::string& line) cons
     point.unstable = reader.whole();
     point.positions_kept = reader.yes();
     point.efforts_kept = reader.yes();
-    point.broken = split_names(reader.text());
+    const std::string broken = reader.text();
+    for (const std::string_view name : split_words(broken))
+      point.broken.emplace_back(name);
     reader.text();
     for (std::size_t i = 0; i < task_.drives.size(); ++i)
       point.drives.push_back(reader.number());

@@ -30,10 +30,6 @@ void store(Series& series, const SeriesQuantity& quantity, std::size_t row, cons
     series.columns[quantity.columns[i]].values[row] = value[static_cast<Eigen::Index>(i)];
 }
 
-Quat quaternion(const Vec4& v) {
-  return Quat(v[3], v[0], v[1], v[2]).normalized();
-}
-
 Vec4 entries(const Quat& q) {
   return {q.x(), q.y(), q.z(), q.w()};
 }

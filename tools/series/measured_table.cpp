@@ -124,13 +124,17 @@ MeasuredTable parse_measured_table(const std::string& text, const std::string& n
   return table;
 }
 
-MeasuredTable read_measured_table(const std::string& path) {
+std::string table_text(const std::string& path) {
   const FileContent content = read_file(path);
   if (!content.code.empty()) {
     throw TableError(path + (content.code == "E101" ? ": cannot be opened: " : ": the file ") +
                      content.message);
   }
-  return parse_measured_table(content.text, path);
+  return content.text;
+}
+
+MeasuredTable read_measured_table(const std::string& path) {
+  return parse_measured_table(table_text(path), path);
 }
 
 std::optional<SiUnit> si_unit(const std::string& unit) {

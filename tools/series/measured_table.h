@@ -33,6 +33,9 @@ struct MeasuredTable {
   std::vector<std::string> names() const;
 };
 
+/// What is in a file. @throws TableError
+std::string table_text(const std::string& path);
+
 /// Cells that are empty, nan, NA, - or ? are numbers that are not there; any other text is an
 /// error.
 /// @throws TableError

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "scenes/loader/files.h"
 #include "scenes/loader/values.h"
 
 namespace cprsim {
@@ -102,12 +101,7 @@ Series parse_series(const std::string& text, const std::string& name) {
 }
 
 Series read_series(const std::string& path) {
-  const FileContent content = read_file(path);
-  if (!content.code.empty()) {
-    throw TableError(path + (content.code == "E101" ? ": cannot be opened: " : ": the file ") +
-                     content.message);
-  }
-  return parse_series(content.text, path);
+  return parse_series(table_text(path), path);
 }
 
 RecordedRun read_run(const std::string& folder) {

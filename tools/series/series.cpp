@@ -11,10 +11,6 @@ namespace {
 /// Relative to a step: times are sums of rounded steps.
 constexpr double kRoundOff = 1e-9;
 
-Quat quaternion(const QuantityValue& v) {
-  return Quat(v[3], v[0], v[1], v[2]).normalized();
-}
-
 /// Index of the column called NAME.COMPONENT, or nothing.
 std::optional<std::size_t> component(const Series& series, const std::string& name,
                                      const char* letter) {

@@ -42,6 +42,11 @@ struct SeriesQuantity {
 /// A value of a quantity; the first width() entries count.
 using QuantityValue = Vec4;
 
+/// Of x y z w, of any length but 0.
+inline Quat quaternion(const QuantityValue& v) {
+  return Quat(v[3], v[0], v[1], v[2]).normalized();
+}
+
 /// Groups columns by the names of their components: .x .y .z, and for orientations .x .y .z .w.
 std::vector<SeriesQuantity> quantities_of(const Series& series);
 

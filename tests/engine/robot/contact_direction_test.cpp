@@ -10,7 +10,7 @@
 namespace cprsim {
 namespace {
 
-constexpr double kTolerance = 1e-7;  // that of newton_direction_test
+constexpr double kSlopeTolerance = 1e-7;  // that of newton_direction_test
 
 ShapeSpec ball() {
   ShapeSpec shape;
@@ -68,15 +68,15 @@ double slope_error(Grip grip, bool dynamic, double h, unsigned seed) {
 TEST(ContactDirection, IsExactForEveryGrip) {
   for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      EXPECT_LT(slope_error(grip, false, 0, seed), kTolerance) << static_cast<int>(grip);
-      EXPECT_LT(slope_error(grip, true, 1. / 100, seed), kTolerance) << static_cast<int>(grip);
+      EXPECT_LT(slope_error(grip, false, 0, seed), kSlopeTolerance) << static_cast<int>(grip);
+      EXPECT_LT(slope_error(grip, true, 1. / 100, seed), kSlopeTolerance) << static_cast<int>(grip);
     }
 }
 
 // Contacts and segments' starts recombine the same columns.
 TEST(ContactDirection, IsExactAcrossSegments) {
   for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
-    EXPECT_LT(slope_error(grip, true, 1. / 1000, 1), kTolerance) << static_cast<int>(grip);
+    EXPECT_LT(slope_error(grip, true, 1. / 1000, 1), kSlopeTolerance) << static_cast<int>(grip);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ void expect_exact(Scene scene, const Setting& setting, const std::string& what) 
     for (unsigned seed = 1; seed <= 3; ++seed) {
       scene.solver.method = method;
       EXPECT_LT(slope_error(scene, setting, seed), kTolerance)
-          << what << ", state " << seed << ", " << name_of(method);
+          << what << ", state " << seed << ", " << method_name(method);
     }
 }
 
