@@ -8,23 +8,31 @@
 
 namespace cprsim {
 
+RigidBody::Turning RigidBody::turning(const StageRates& rates) const {
+  Turning out;
+  out.theta = log_so3(R_start_.transpose() * R);
+  out.theta_t = rates.c_v * out.theta + rotation.x_h;
+  const Mat3 J_r = right_jacobian(out.theta);
+  out.by_theta = rates.c_v * Mat3::Identity();
+  out.omega = out.theta_t;
+  if (rates.body_rates) {
+    out.omega = J_r * out.theta_t;
+    out.by_theta = rates.c_v * J_r + right_jacobian_derivative(out.theta, out.theta_t);
+  }
+  out.by_phi = R * out.by_theta * right_jacobian_inverse(out.theta) * R.transpose();
+  return out;
+}
+
 RigidBody::Inertial RigidBody::inertial(const StageRates& rates) {
   Inertial out;
-  const Vec3 theta = log_so3(R_start_.transpose() * R);
-  const Vec3 theta_t = rates.c_v * theta + rotation.x_h;
-  const Mat3 J_r = right_jacobian(theta);
-  Mat3 omega_by_theta = rates.c_v * Mat3::Identity();
-  omega = theta_t;
-  if (rates.body_rates) {
-    omega = J_r * theta_t;
-    omega_by_theta = rates.c_v * J_r + right_jacobian_derivative(theta, theta_t);
-  }
+  const Turning now = turning(rates);
+  omega = now.omega;
   const Vec3 omega_t = rates.c_w * omega + rotation.v_h;
   const Vec3 H = inertia * omega;
   const Vec3 moment = R * (inertia * omega_t + omega.cross(H));
   const Mat3 by_omega = rates.c_w * inertia + hat(omega) * inertia - hat(H);
   const Mat3 by_phi =
-      R * by_omega * omega_by_theta * right_jacobian_inverse(theta) * R.transpose() - hat(moment);
+      R * by_omega * now.by_theta * right_jacobian_inverse(now.theta) * R.transpose() - hat(moment);
   const Vec3 a = rates.c_w * (rates.c_v * p + position.x_h) + position.v_h;
   out.wrench << moment, mass * a;
   out.by_motion.topLeftCorner<3, 3>() = by_phi;

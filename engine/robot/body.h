@@ -32,6 +32,14 @@ class RigidBody {
   };
 
   Inertial inertial(const StageRates& rates);
+
+  /// Angular velocity at the present rotation, body axes; d(omega) = R^T by_phi phi.
+  struct Turning {
+    Vec3 theta, theta_t, omega;
+    Mat3 by_theta, by_phi;
+  };
+
+  Turning turning(const StageRates& rates) const;
   /// Weight under gravity g, and its derivative.
   Inertial weight(const Vec3& g) const;
 

@@ -12,8 +12,6 @@ namespace {
 // of the radius: how deep a point sinks before it touches; well below the tolerance, well above
 // what a converged solve leaves
 constexpr double kNotice = 0.1 * kContactTolerance;
-// of the radius: how far a contact may have slid along its rod before it is moved after
-constexpr double kSlide = 1e-3;
 // of a cell: contacts between nodes stay this far from them
 constexpr double kEdge = 1e-3;
 // turn of the surface's normal along a cell: less is flat
@@ -41,8 +39,7 @@ Vec3 RodContacts::point(const Rod& rod, std::size_t cell, double xi) const {
 
 Distance RodContacts::distance(const Rod& rod, std::size_t obstacle, std::size_t cell,
                                double xi) const {
-  const Surface& surface = rod.obstacles[obstacle].surface;
-  return distance_to(*surface.shape, surface.X_WC, point(rod, cell, xi));
+  return distance_from(rod.obstacles[obstacle], point(rod, cell, xi));
 }
 
 Vec3 RodContacts::tangent(const Rod& rod, std::size_t cell, double xi) const {
@@ -97,10 +94,47 @@ double RodContacts::lowest(const Rod& rod, std::size_t obstacle, std::size_t cel
 double RodContacts::moved(const Rod& rod, const Scan& since) const {
   const std::vector<NodeState>& nodes = rod.side->contact_nodes();
   if (since.nodes.size() != nodes.size()) return std::numeric_limits<double>::infinity();
-  double most = 0;
+  double own = 0, most = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k)
-    most = std::max(most, (position_of(nodes[k]) - since.nodes[k]).squaredNorm());
-  return std::sqrt(most);
+    own = std::max(own, (position_of(nodes[k]) - since.nodes[k]).norm());
+  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
+    const Obstacle& obstacle = rod.obstacles[o];
+    double far = own;
+    if (obstacle.body >= 0) {
+      far = 0;
+      const Pose shift = robot_.body_pose(obstacle.body) * since.bodies[o].inverse();
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        far = std::max(far, (position_of(nodes[k]) - shift * since.nodes[k]).norm());
+    } else if (obstacle.rod >= 0) {
+      const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
+      double their = 0;
+      for (std::size_t k = 0; k < others.size(); ++k)
+        their = std::max(their, (position_of(others[k]) - since.others[o][k]).norm());
+      far += their;
+    }
+    most = std::max(most, far);
+  }
+  return most;
+}
+
+/// How far a cell's ends have moved, seen from an obstacle.
+double RodContacts::passed(const Rod& rod, const Scan& since, std::size_t o, std::size_t c) const {
+  const Obstacle& obstacle = rod.obstacles[o];
+  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
+  const auto farther = [](const std::vector<NodeState>& now, const std::vector<Vec3>& then,
+                          const Pose& shift,
+                          std::size_t k) { return (position_of(now[k]) - shift * then[k]).norm(); };
+  const Pose shift =
+      obstacle.body < 0 ? Pose{} : robot_.body_pose(obstacle.body) * since.bodies[o].inverse();
+  const double own =
+      std::max(farther(nodes, since.nodes, shift, c), farther(nodes, since.nodes, shift, c + 1));
+  if (obstacle.rod < 0) return own;
+  const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
+  const std::size_t foot = near(since, rod, c, o).foot;
+  double their = 0;
+  for (std::size_t k = foot > 0 ? foot - 1 : 0; k < std::min(foot + 3, others.size()); ++k)
+    their = std::max(their, farther(others, since.others[o], Pose{}, k));
+  return own + their;
 }
 
 // Twice, since a cell between its ends moves with their tangents too.
@@ -114,24 +148,34 @@ void RodContacts::scan(Rod& rod) const {
   out.nodes.clear();
   for (const NodeState& node : nodes)
     out.nodes.emplace_back(position_of(node));
-  out.cells.assign(nodes.size() - 1, {});
+  out.near.assign((nodes.size() - 1) * rod.obstacles.size(), {});
   out.clearance = std::numeric_limits<double>::infinity();
-  for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
-    Near& near = out.cells[c];
-    near.distance = std::numeric_limits<double>::infinity();
-    for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
+  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
+    const Obstacle& obstacle = rod.obstacles[o];
+    for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
       // a distance changes no faster than one walks
-      double d = 0.5 * (distance(rod, o, c, 0).d +
-                        distance_to(*rod.obstacles[o].surface.shape, rod.obstacles[o].surface.X_WC,
-                                    position_of(nodes[c + 1]))
-                            .d -
-                        1.1 * length(rod, c));
+      double d =
+          0.5 * (distance(rod, o, c, 0).d + distance_from(obstacle, position_of(nodes[c + 1])).d -
+                 1.1 * length(rod, c));
       double xi = 0.5;
       if (d < rod.radius) d = lowest(rod, o, c, xi);
       out.clearance = std::min(out.clearance, d - rod.radius);
-      if (d >= near.distance) continue;
-      near = {d, distance(rod, o, c, xi).n, !rod.obstacles[o].plane};
+      Near& near = out.near[c * rod.obstacles.size() + o];
+      near = {d, distance(rod, o, c, xi).n, 0};
+      if (obstacle.rod >= 0)
+        near.foot = foot(rods_[static_cast<std::size_t>(obstacle.rod)], point(rod, c, xi)).cell;
     }
+  }
+  if (!robot_.rods_meet) return;
+  out.bodies.assign(rod.obstacles.size(), {});
+  out.others.assign(rod.obstacles.size(), {});
+  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
+    const Obstacle& obstacle = rod.obstacles[o];
+    if (obstacle.body >= 0) out.bodies[o] = robot_.body_pose(obstacle.body);
+    if (obstacle.rod < 0) continue;
+    for (const NodeState& node :
+         rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes())
+      out.others[o].emplace_back(position_of(node));
   }
 }
 
@@ -151,6 +195,14 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
   contact.grip = contact.friction > 0 ? Grip::kStick : Grip::kSmooth;
   contact.lever = -rod.radius * distance(rod, obstacle, cell, xi).n;
   contact.axis = tangent(rod, cell, xi);
+  if (rod.obstacles[obstacle].fixed()) return contact;
+  contact.role = ContactRole::kShared;
+  contact.body = rod.obstacles[obstacle].body;
+  // what has passed through another rod within the step is to go back
+  const std::size_t last = rod.side->contact_nodes().size() - 2;
+  const Vec3& was = near(rod.start, rod, std::min(cell, last), obstacle).normal;
+  if (contact.body < 0 && contact.lever.dot(was) > 0) contact.lever *= -1;
+  place_foot(rod, contact);
   return contact;
 }
 
@@ -198,7 +250,8 @@ bool RodContacts::follow(const Rod& rod, RodContact& contact, const ContactRows&
     const double rate = rows.slip.norm(), force = contact.force.norm();
     if (rate > 0 && force > 0) contact.kappa = std::max(1.0, force / rate);
   }
-  return slide(rod, contact) || turned;
+  const bool slid = slide(rod, contact), stepped = place_foot(rod, contact);
+  return slid || stepped || turned;
 }
 
 // New points: the lowest between two nodes, or a node that is not above what its cells' lowest are.
@@ -207,16 +260,24 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
   const Rod& rod = rods_[index];
   const std::vector<RodContact>& contacts = rod.side->contacts();
   const double noticed = rod.radius * (1 - kNotice), fine = kNotice * rod.radius;
-  const std::size_t cells = rod.scan.cells.size();
-  const auto beside = [&](std::size_t node) {
+  const std::size_t cells = rod.scan.nodes.size() - 1;
+  // contacts with what stands still share cells with no other such
+  const auto same = [&](const RodContact& contact, std::size_t o) {
+    return contact.role != ContactRole::kEcho &&
+           (contact.surface == static_cast<int>(o) ||
+            (contact.role == ContactRole::kOwn && rod.obstacles[o].fixed()));
+  };
+  const auto beside = [&](std::size_t node, std::size_t o) {
     return std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
+      if (!same(contact, o)) return false;
       const double at = static_cast<double>(contact.cell) + contact.xi;
       return std::abs(at - static_cast<double>(node)) < kBeside;
     });
   };
-  const auto taken = [&](std::size_t cell) {
+  const auto taken = [&](std::size_t cell, std::size_t o) {
     return std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
-      return contact.cell == cell || (contact.at_node() && contact.cell == cell + 1);
+      return same(contact, o) &&
+             (contact.cell == cell || (contact.at_node() && contact.cell == cell + 1));
     });
   };
   const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {
@@ -227,7 +288,7 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
   for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
     for (std::size_t c = 0; c < cells; ++c) {
       low[c] = std::numeric_limits<double>::infinity();
-      if (rod.scan.cells[c].distance < noticed) low[c] = lowest(rod, o, c, xi[c]);
+      if (near(rod.scan, rod, c, o).distance < noticed) low[c] = lowest(rod, o, c, xi[c]);
     }
     for (std::size_t k = 0; k <= cells; ++k) {
       const std::size_t left = k > 0 ? k - 1 : 0, right = std::min(k, cells - 1);
@@ -236,13 +297,13 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
                            ? (k < cells ? distance(rod, o, k, 0).d : distance(rod, o, k - 1, 1).d)
                            : noticed;
       const bool lowest_here = d < below + fine || (d < noticed && flat(rod, o, k, 0));
-      if (d < noticed && lowest_here && !held(rod, k) && !beside(k)) add(o, k, 0, d);
+      if (d < noticed && lowest_here && !held(rod, k) && !beside(k, o)) add(o, k, 0, d);
     }
     for (std::size_t c = 0; c < cells; ++c) {
       const bool inside = xi[c] > kEdge && xi[c] < 1 - kEdge;
       if (!(low[c] < noticed) || !inside) continue;
       const double ends = std::min(distance(rod, o, c, 0).d, distance(rod, o, c, 1).d);
-      if (low[c] < ends - fine && !taken(c)) add(o, c, xi[c], low[c]);
+      if (low[c] < ends - fine && !taken(c, o)) add(o, c, xi[c], low[c]);
     }
   }
 }

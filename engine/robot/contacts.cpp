@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace cprsim {
@@ -28,40 +29,92 @@ RodContacts::RodContacts(Robot& robot) : robot_(robot) {
   const Scene& scene = *robot.scene;
   friction_ = scene.effects.has(Effect::kFriction);
   if (!scene.effects.has(Effect::kContact)) return;
-  for (RobotRod& rod : robot.rods) {
+  index_.assign(robot.rods.size(), -1);
+  for (std::size_t r = 0; r < robot.rods.size(); ++r) {
+    RobotRod& rod = robot.rods[r];
+    if (rod.spec->lacks("contact")) continue;
     Rod mine;
     mine.rod = &rod;
+    mine.index = r;
     mine.side = rod.model->touching();
     mine.radius = rod.section.half_width;
-    if (rod.spec->lacks("contact")) continue;
-    std::vector<Surface> surfaces;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-      if (robot.links[i].body != LinkPlace::kGround) continue;
-      for (const ColliderSpec& collider : scene.bodies[i].colliders) {
-        if (!has_distance(collider.shape.kind) || !may_touch(collider.surface, rod.spec->surface))
-          continue;
-        const Surface surface{&collider.shape, robot.links[i].X * collider.X_BC};
-        const double friction = collider.surface.friction * rod.spec->surface.friction;
-        mine.obstacles.push_back({scene.bodies[i].name + "::" + collider.name, surface,
-                                  friction_ ? friction : 0,
-                                  collider.shape.kind == ShapeKind::kPlane});
-        surfaces.push_back(surface);
-      }
-    }
-    if (surfaces.empty()) continue;
-    if (!mine.side)
-      throw std::invalid_argument("rod '" + rod.spec->name +
-                                  "' may touch obstacles: only method shooting in space can");
-    mine.side->set_surfaces(surfaces, mine.radius, friction_);
+    add_colliders(mine);
     rods_.push_back(std::move(mine));
   }
+  add_other_rods();
+  for (std::size_t i = 0; i < rods_.size(); ++i) {
+    index_[rods_[i].index] = static_cast<int>(i);
+    give_surfaces(rods_[i]);
+  }
+}
+
+// Not of the bodies that hold the rod: what a joint joins is meant to be together.
+void RodContacts::add_colliders(Rod& rod) const {
+  const Scene& scene = *robot_.scene;
+  const RobotRod& own = *rod.rod;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const LinkPlace& place = robot_.links[i];
+    const bool holds = place.body >= 0 && ((own.base_held && own.base.body == place.body) ||
+                                           (own.tip_held && own.tip.body == place.body));
+    if (place.body == LinkPlace::kFree || holds) continue;
+    for (const ColliderSpec& collider : scene.bodies[i].colliders) {
+      if (!has_distance(collider.shape.kind) || !may_touch(collider.surface, own.spec->surface))
+        continue;
+      Obstacle obstacle;
+      obstacle.name = scene.bodies[i].name + "::" + collider.name;
+      obstacle.surface = {&collider.shape, place.X * collider.X_BC};
+      obstacle.plane = collider.shape.kind == ShapeKind::kPlane;
+      obstacle.body = std::max(place.body, -1);
+      if (friction_) obstacle.friction = collider.surface.friction * own.spec->surface.friction;
+      rod.obstacles.push_back(obstacle);
+    }
+  }
+}
+
+// Rods that neither touch anything nor are touched are left alone.
+void RodContacts::add_other_rods() {
+  std::vector<char> met(rods_.size(), 0);
+  for (std::size_t a = 0; a < rods_.size(); ++a) {
+    if (!rods_[a].obstacles.empty()) met[a] = 1;
+    for (std::size_t b = a + 1; b < rods_.size(); ++b)
+      if (may_touch(rods_[a].rod->spec->surface, rods_[b].rod->spec->surface)) met[a] = met[b] = 1;
+  }
+  std::vector<Rod> kept;
+  for (std::size_t a = 0; a < rods_.size(); ++a)
+    if (met[a]) kept.push_back(std::move(rods_[a]));
+  rods_ = std::move(kept);
+  for (std::size_t a = 0; a < rods_.size(); ++a)
+    for (std::size_t b = a + 1; b < rods_.size(); ++b) {
+      const SurfaceSpec &mine = rods_[a].rod->spec->surface, &other = rods_[b].rod->spec->surface;
+      if (!may_touch(mine, other)) continue;
+      Obstacle obstacle;
+      obstacle.name = rods_[b].rod->spec->name;
+      obstacle.rod = static_cast<int>(b);
+      if (friction_) obstacle.friction = mine.friction * other.friction;
+      rods_[a].obstacles.push_back(obstacle);
+    }
+}
+
+void RodContacts::give_surfaces(Rod& rod) {
+  if (!rod.side)
+    throw std::invalid_argument("rod '" + rod.rod->spec->name +
+                                "' may touch something: only method shooting in space can");
+  std::vector<Surface> surfaces;
+  for (const Obstacle& obstacle : rod.obstacles) {
+    surfaces.push_back(obstacle.surface);
+    robot_.rods_meet = robot_.rods_meet || !obstacle.fixed();
+  }
+  rod.side->set_surfaces(surfaces, rod.radius, friction_);
 }
 
 // Of neighbours that pull, only the hardest lets go: the others may press once it has.
 bool RodContacts::pulls_most(const Rod& rod, std::size_t contact) const {
   const std::vector<RodContact>& contacts = rod.side->contacts();
   const std::vector<ContactRows>& rows = rod.side->contact_state();
-  const auto pressure = [&](std::size_t i) { return rows[i].at.n.dot(contacts[i].force); };
+  const auto pressure = [&](std::size_t i) {
+    const bool echo = contacts[i].role == ContactRole::kEcho;
+    return echo ? std::numeric_limits<double>::infinity() : rows[i].at.n.dot(contacts[i].force);
+  };
   const double own = pressure(contact);
   return own < 0 && (contact == 0 || own <= pressure(contact - 1)) &&
          (contact + 1 == contacts.size() || own <= pressure(contact + 1));
@@ -76,6 +129,7 @@ void RodContacts::review(std::size_t index, std::vector<Change>& changes) const 
   const double unit = robot_.scale.force;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const RodContact& contact = contacts[i];
+    if (contact.role == ContactRole::kEcho) continue;
     const Vec3& n = rows[i].at.n;
     const double pressure = n.dot(contact.force);
     const Vec3 grip = contact.force - pressure * n, slip = rows[i].slip - n.dot(rows[i].slip) * n;
@@ -119,6 +173,69 @@ void RodContacts::apply(const std::vector<Change>& changes) {
                      [](const RodContact& a, const RodContact& b) { return order(a) < order(b); });
     contacts = std::move(next);
   }
+  mirror();
+}
+
+// Forgets echoes and makes them anew from the contacts whose they are.
+void RodContacts::mirror() {
+  if (!robot_.rods_meet) return;
+  for (Rod& rod : rods_) {
+    std::vector<RodContact>& contacts = rod.side->contacts();
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
+                                  [](const RodContact& c) { return c.role == ContactRole::kEcho; }),
+                   contacts.end());
+  }
+  // both entries get the same number first
+  int count = 0;
+  for (Rod& rod : rods_) {
+    std::vector<RodContact>& own = rod.side->contacts();
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (own[i].role != ContactRole::kShared || own[i].other_rod < 0) continue;
+      own[i].partner = count++;
+      RodContact echo;
+      echo.role = ContactRole::kEcho;
+      echo.other_rod = static_cast<int>(rod.index);
+      echo.partner = own[i].partner;
+      echo.cell = own[i].other_cell;
+      echo.xi = own[i].other_xi;
+      echo.lever = own[i].other_lever;
+      echo.force = -own[i].force;
+      Rod& other =
+          rods_[static_cast<std::size_t>(index_[static_cast<std::size_t>(own[i].other_rod)])];
+      other.side->contacts().push_back(echo);
+    }
+  }
+  std::vector<int> own_entry(static_cast<std::size_t>(count)), echo_entry(own_entry);
+  for (Rod& rod : rods_) {
+    std::vector<RodContact>& contacts = rod.side->contacts();
+    std::stable_sort(contacts.begin(), contacts.end(),
+                     [](const RodContact& a, const RodContact& b) { return order(a) < order(b); });
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      if (contacts[i].partner >= 0)
+        (contacts[i].role == ContactRole::kEcho
+             ? echo_entry
+             : own_entry)[static_cast<std::size_t>(contacts[i].partner)] = static_cast<int>(i);
+  }
+  for (Rod& rod : rods_)
+    for (RodContact& contact : rod.side->contacts())
+      if (contact.partner >= 0)
+        contact.partner = (contact.role == ContactRole::kEcho
+                               ? own_entry
+                               : echo_entry)[static_cast<std::size_t>(contact.partner)];
+}
+
+// The same where contacts stayed in their cells.
+void RodContacts::update_echoes() {
+  if (!robot_.rods_meet) return;
+  for (Rod& rod : rods_)
+    for (RodContact& echo : rod.side->contacts()) {
+      if (echo.role != ContactRole::kEcho) continue;
+      const Rod& other =
+          rods_[static_cast<std::size_t>(index_[static_cast<std::size_t>(echo.other_rod)])];
+      const RodContact& contact = other.side->contacts()[static_cast<std::size_t>(echo.partner)];
+      echo.xi = contact.other_xi;
+      echo.lever = contact.other_lever;
+    }
 }
 
 bool RodContacts::revise(int round) {
@@ -130,11 +247,16 @@ bool RodContacts::revise(int round) {
     scan(rod);
     std::vector<RodContact>& contacts = rod.side->contacts();
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (follow(rod, contacts[i], rod.side->contact_state()[i])) again = true;
+      if (contacts[i].role != ContactRole::kEcho &&
+          follow(rod, contacts[i], rod.side->contact_state()[i]))
+        again = true;
     review(r, changes);
     search(r, changes);
   }
-  if (changes.empty() && !again) return false;
+  if (changes.empty() && !again) {
+    update_echoes();
+    return false;
+  }
   if (round >= kPatience && !changes.empty()) {
     const auto worst =
         std::max_element(changes.begin(), changes.end(),
@@ -161,33 +283,37 @@ void RodContacts::begin_step() {
 
 bool RodContacts::changed() const {
   return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) {
-    const std::vector<RodContact>& now = rod.side->contacts();
+    // echoes change with the contacts whose they are
+    std::vector<RodContact> now = rod.side->contacts(), before = rod.before;
+    for (std::vector<RodContact>* contacts : {&now, &before})
+      contacts->erase(
+          std::remove_if(contacts->begin(), contacts->end(),
+                         [](const RodContact& c) { return c.role == ContactRole::kEcho; }),
+          contacts->end());
     const auto alike = [](const RodContact& a, const RodContact& b) {
       return a.surface == b.surface && a.grip == b.grip;
     };
-    return now.size() != rod.before.size() ||
-           !std::equal(now.begin(), now.end(), rod.before.begin(), alike);
+    return now.size() != before.size() ||
+           !std::equal(now.begin(), now.end(), before.begin(), alike);
   });
 }
 
 bool RodContacts::leapt() const {
   for (const Rod& rod : rods_) {
     if (2 * moved(rod, rod.start) < rod.start.clearance) continue;
-    const std::vector<NodeState>& nodes = rod.side->contact_nodes();
     const std::vector<RodContact>& contacts = rod.side->contacts();
-    for (std::size_t c = 0; c < rod.start.cells.size(); ++c) {
-      const Near& near = rod.start.cells[c];
-      if (!near.solid) continue;
-      const double far = std::max((position_of(nodes[c]) - rod.start.nodes[c]).norm(),
-                                  (position_of(nodes[c + 1]) - rod.start.nodes[c + 1]).norm());
-      if (far <= 0.5 * near.distance) continue;
-      const bool held_back =
-          std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
-            return (contact.cell == c || (contact.at_node() && contact.cell == c + 1)) &&
-                   contact.lever.dot(near.normal) < -0.5 * rod.radius;
-          });
-      if (!held_back) return true;
-    }
+    const std::size_t cells = rod.start.nodes.size() - 1;
+    for (std::size_t c = 0; c < cells; ++c)
+      for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
+        const Near& was = near(rod.start, rod, c, o);
+        if (rod.obstacles[o].plane || passed(rod, rod.start, o, c) <= 0.5 * was.distance) continue;
+        const bool held_back =
+            std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
+              return (contact.cell == c || (contact.at_node() && contact.cell == c + 1)) &&
+                     contact.lever.dot(was.normal) < -0.5 * rod.radius;
+            });
+        if (!held_back) return true;
+      }
   }
   return false;
 }
@@ -197,11 +323,13 @@ std::string RodContacts::overlap() {
     scan(rod);
     if (rod.scan.clearance >= -kContactTolerance * rod.radius) continue;
     for (std::size_t o = 0; o < rod.obstacles.size(); ++o)
-      for (std::size_t c = 0; c < rod.scan.cells.size(); ++c) {
+      for (std::size_t c = 0; c + 1 < rod.scan.nodes.size(); ++c) {
         double xi = 0;
         const double gap = lowest(rod, o, c, xi) - rod.radius;
         if (gap < -kContactTolerance * rod.radius)
-          return "rod '" + rod.rod->spec->name + "' begins inside '" + rod.obstacles[o].name + "'";
+          return "rod '" + rod.rod->spec->name + "' begins " +
+                 (rod.obstacles[o].rod < 0 ? "inside '" : "in the way of '") +
+                 rod.obstacles[o].name + "'";
       }
   }
   return {};
@@ -216,6 +344,7 @@ ContactSample RodContacts::sample() {
     const std::vector<RodContact>& contacts = rod.side->contacts();
     const std::vector<ContactRows>& rows = rod.side->contact_state();
     for (std::size_t i = 0; i < contacts.size() && i < rows.size(); ++i) {
+      if (contacts[i].role == ContactRole::kEcho) continue;
       const Vec3& n = rows[i].at.n;
       const double pressure = n.dot(contacts[i].force);
       ++out.count;

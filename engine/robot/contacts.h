@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where rods touch obstacles, and how: the part of contact that is not smooth. Between solves of
-// the Newton system it looks where rods have sunk in, drops points that pull, and decides between
-// stick and slip (a primal-dual active set method: Hintermüller, Ito, Kunisch, SIAM J. Optim. 13,
-// 2002); the forces themselves are unknowns of the rods (engine/rod/contact.h). A solve is over
-// when nothing is left to revise.
+// Where rods touch obstacles and each other, and how: the part of contact that is not smooth.
+// Between solves of the Newton system it looks where rods have sunk in, drops points that pull, and
+// decides between stick and slip (a primal-dual active set method: Hintermüller, Ito, Kunisch, SIAM
+// J. Optim. 13, 2002); the forces themselves are unknowns of the rods (engine/rod/contact.h). A
+// solve is over when nothing is left to revise.
 //
 // Points: where a rod touches at a node, or nearest between two nodes, one point a cell. A rod that
 // lies on something touches at its nodes, like the quadrature of a line contact.
 //
-// A step may not carry a rod through anything: no point of a centreline moves by more than half its
-// distance from the solid, unless a contact holds it on its side. Planes have no other side.
+// A step may not carry a rod through anything: no point of a centreline moves, seen from the solid,
+// by more than half its distance from it, unless a contact holds it on its side. Planes have no
+// other side.
+//
+// To a rod, another rod is an obstacle like any: the tube around its curved centreline. Of two rods
+// the first of the scene looks for the points; its force acts on the other, with its sign changed,
+// as an echo among the other's contacts.
 #pragma once
 
 #include <string>
@@ -22,6 +27,9 @@ namespace cprsim {
 
 /// Depth that a scene tolerates, over the rod's radius.
 constexpr double kContactTolerance = 1e-3;
+
+/// Of the radius: how far a contact may have slid along its rod before it is moved after.
+constexpr double kSlide = 1e-3;
 
 class RodContacts {
  public:
@@ -57,26 +65,40 @@ class RodContacts {
  private:
   struct Obstacle {
     std::string name;
-    Surface surface;
+    Surface surface;  ///< with its pose in the world, or on the body
     double friction = 0;
     bool plane = false;
+    int body = -1;  ///< index into Robot::bodies, if on one
+    int rod = -1;   ///< index into rods_, if one
+
+    bool fixed() const { return body < 0 && rod < 0; }
   };
 
-  /// What a scan found in a cell: the least distance of the centreline from anything.
+  /// What a scan found in a cell: the least distance of the centreline from an obstacle.
   struct Near {
     double distance = 0;
     Vec3 normal = Vec3::Zero();
-    bool solid = false;  ///< of a body with another side
+    std::size_t foot = 0;  ///< cell of the other rod
   };
 
   struct Scan {
     std::vector<Vec3> nodes;
-    std::vector<Near> cells;
-    double clearance = 0;  ///< nothing is nearer, m
+    std::vector<Near> near;                 ///< cells × obstacles
+    std::vector<Pose> bodies;               ///< of each obstacle on one
+    std::vector<std::vector<Vec3>> others;  ///< nodes of each obstacle that is a rod
+    double clearance = 0;                   ///< nothing is nearer, m
+  };
+
+  /// The nearest point of a rod's centreline.
+  struct Foot {
+    std::size_t cell = 0;
+    double xi = 0;
+    Distance at;  ///< from the rod's surface
   };
 
   struct Rod {
     RobotRod* rod = nullptr;
+    std::size_t index = 0;  ///< in Robot::rods
     TouchingRod* side = nullptr;
     double radius = 0;
     std::vector<Obstacle> obstacles;
@@ -94,6 +116,21 @@ class RodContacts {
   };
 
   static bool touches(const Rod& rod) { return !rod.side->contacts().empty(); }
+
+  static const Near& near(const Scan& scan, const Rod& rod, std::size_t cell,
+                          std::size_t obstacle) {
+    return scan.near[cell * rod.obstacles.size() + obstacle];
+  }
+
+  void add_colliders(Rod& rod) const;
+  void add_other_rods();
+  void give_surfaces(Rod& rod);
+  Foot foot(const Rod& other, const Vec3& x) const;
+  Distance distance_from(const Obstacle& obstacle, const Vec3& x) const;
+  double passed(const Rod& rod, const Scan& since, std::size_t obstacle, std::size_t cell) const;
+  bool place_foot(const Rod& rod, RodContact& contact) const;
+  void update_echoes();
+  void mirror();
 
   double length(const Rod& rod, std::size_t cell) const;
   Vec3 point(const Rod& rod, std::size_t cell, double xi) const;
@@ -114,6 +151,7 @@ class RodContacts {
   void apply(const std::vector<Change>& changes);
 
   Robot& robot_;
+  std::vector<int> index_;  ///< Robot::rods → rods_
   bool friction_ = false;
   std::vector<Rod> rods_;
 };

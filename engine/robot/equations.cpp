@@ -26,6 +26,7 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
   }
   size_ = offset;
   loops_ = robot.has_joint_loops();
+  note_bodies();
 }
 
 PointLoad Equations::scaled_load(const LoadSpec& load) const {
@@ -94,11 +95,19 @@ void Equations::accept_equilibrium(double t) {
   equilibrium_time_ = t;
   for (Joint& joint : robot_.joints)
     joint.accept(body_pose(joint.parent), body_pose(joint.child));
+  if (robot_.rods_meet) note_bodies();
 }
 
 void Equations::accept_contacts() {
   for (RobotRod& rod : robot_.rods)
     if (TouchingRod* side = rod.model->touching()) side->accept_contacts();
+  note_bodies();
+}
+
+void Equations::note_bodies() {
+  slip_from_.clear();
+  for (const RigidBody& body : robot_.bodies)
+    slip_from_.push_back(body.pose());
 }
 
 void Equations::set_fraction(double fraction) {
@@ -308,6 +317,10 @@ ProblemResidual Equations::evaluate() {
   }
   for (std::size_t b = 0; b < wrench_.size(); ++b)
     wrench_[b] = body_rows(b);
+  if (robot_.rods_meet) {
+    find_pairs();
+    evaluate_pairs(r);
+  }
   add_body_loads();
   add_rod_wrenches();
   add_joint_wrenches();

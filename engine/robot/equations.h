@@ -5,6 +5,7 @@
 //   unknowns                                   rows
 //   body b: (phi, dp) of its centre of mass    Newton-Euler (moment, force)
 //   joint j: lambda (6), q where unknown       closure (6), effort
+//   contact c between what moves: force (3)    engine/robot/contact_pair.h
 //   rod r: its own                             its own; condensed to z (6) with T z + ... = 0 and
 //   the wrenches on
 //                                              its bodies (engine/rod/rod_model.h)
@@ -19,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/robot/contact_pair.h"
 #include "engine/robot/robot.h"
 #include "engine/solve/problem.h"
 
@@ -119,13 +121,35 @@ class Equations final : public Problem {
 
   int constraint_count() const { return size_ - body_unknowns_; }
 
+  /// Wrench of contacts on a body about its centre of mass, at the last evaluation.
+  Vec6 contact_wrench(int body) const;
+
  private:
   struct Worst {
-    enum class Kind { kRod, kBody, kJoint } kind = Kind::kRod;
+    enum class Kind { kRod, kBody, kJoint, kContact } kind = Kind::kRod;
     int index = 0, row = 0;
   };
 
   void prepare_rods();
+
+  /// A contact with rows here: entry `contact` of a rod, what the other side is stands there.
+  struct Pair {
+    std::size_t rod = 0, contact = 0;
+    PairRows rows;
+    Vec3 arm = Vec3::Zero();  ///< from the body's centre of mass to the rod's surface
+    int offset = -1;          ///< of the force's unknowns
+  };
+
+  void note_bodies();
+  void find_pairs();
+  void evaluate_pairs(ProblemResidual& r);
+  int number_pairs(int offset);
+  void assemble_pairs();
+  void assemble_open_forces(std::size_t rod);
+  void pair_units(VecX& columns) const;
+  Vec6 distribute_forces(std::size_t rod);
+  const OpenPorts* open_ports(std::size_t rod) const;
+  std::string pair_name(const Pair& pair) const;
 
   double acting() const { return loads_on_ ? fraction_ : 0; }
 
@@ -189,6 +213,8 @@ class Equations final : public Problem {
   std::vector<Mat6> body_tangent_;  ///< of loads and weight minus inertia
   std::vector<Vec6> joint_gap_;
   std::vector<Pose> marked_;
+  std::vector<Pair> pairs_;
+  std::vector<Pose> slip_from_;  ///< bodies, where slip counts from without rates
   Worst worst_;
   double worst_size_ = 0;
 
@@ -200,7 +226,13 @@ class Equations final : public Problem {
     int offset = -1;  ///< of z in the global system when delayed
     Mat6 z_A, z_B;    ///< z = z_A zeta_A + z_B zeta_B + z0; the leading blocks in a plane
     Vec6 z0;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> z_F;  ///< of forces of shared contacts
+    std::vector<int> forces;                       ///< their unknowns
+    std::vector<double> signs;
   };
+
+  struct RodTerms;
+  void add_rod_terms(int row, std::size_t rod, const RodTerms& terms);
 
   std::vector<Elimination> eliminations_;
   int freedoms_ = 6;                      ///< of a body

@@ -71,7 +71,10 @@ bool Equations::condense(bool keep_all) {
       e.z_A.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_A.topLeftCorner<N, N>()));
     if (rod.tip_held && rod.tip.body >= 0)
       e.z_B.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_B.topLeftCorner<N, N>()));
+    if constexpr (N == 6)
+      if (const OpenPorts* ports = open_ports(i)) e.z_F = -lu.solve(ports->T_F);
   }
+  if (robot_.rods_meet) offset = number_pairs(offset);
   size_ = offset;
   return true;
 }
@@ -227,6 +230,7 @@ void Equations::assemble() {
     assemble_parts<3>();
   else
     assemble_parts<6>();
+  if (!pairs_.empty()) assemble_pairs();
 }
 
 // Force that moves a body by the unit of length: rods' stiffness, or its own inertia over the step.
@@ -253,6 +257,7 @@ VecX Equations::column_units() const {
       if (freedom.unknown >= 0 && freedom.measured_as_length())
         u[at + N + freedom.unknown] = length;
   }
+  if (!pairs_.empty()) pair_units(u);
   return u;
 }
 
@@ -344,6 +349,7 @@ void Equations::distribute_to_rods() {
       z.head<N>() =
           e.z_A.topLeftCorner<N, N>() * a + e.z_B.topLeftCorner<N, N>() * b + e.z0.head<N>();
     }
+    if (!pairs_.empty()) z += distribute_forces(i);
     rod.model->set_direction(z, zeta_A);
   }
 }

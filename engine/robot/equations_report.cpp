@@ -22,6 +22,8 @@ std::string Equations::worst_row() const {
     case Worst::Kind::kJoint:
       return "joint " + robot_.joints[i].spec->name + ", " +
              (robot_.plane && worst_.row < 3 ? kPlanarClosure : kClosure)[worst_.row];
+    case Worst::Kind::kContact:
+      return pair_name(pairs_[i]);
     case Worst::Kind::kRod:
       break;
   }

@@ -72,6 +72,7 @@ struct Robot {
   std::vector<BodyLoad> body_loads;
   std::vector<JointDrive> joint_drives;
   Vec3 gravity = Vec3::Zero();  ///< 0 unless the effect is on
+  bool rods_meet = false;       ///< bodies that move, or each other
   RobotScale scale;
   std::optional<Mat3> plane;  ///< of a planar scene: e1, e2 and the normal as columns, world
 

@@ -6,33 +6,31 @@
 namespace cprsim {
 namespace {
 
-/// P a and its derivative by x through n alone: d(P a) = -(n.a) H dx - n (a^T H dx).
-Mat3 projected_by_x(const Distance& at, const Vec3& a) {
-  return -at.n.dot(a) * at.H - at.n * (a.transpose() * at.H);
+/// P a and its derivative by n: d(P a) = -(n.a) dn - n (a.dn).
+Mat3 projected_by_n(const Vec3& n, const Vec3& a) {
+  return -n.dot(a) * Mat3::Identity() - n * a.transpose();
 }
 
-/// value += part; derivatives by x, u and f of one term.
-struct Term {
-  Vec3 value = Vec3::Zero();
-  Mat3 by_x = Mat3::Zero(), by_u = Mat3::Zero(), by_f = Mat3::Zero();
-};
+}  // namespace
 
-Term tangential_row(const RodContact& contact, const Distance& at, const Vec3& u,
-                    const ContactScale& scale) {
-  const Mat3 P = Mat3::Identity() - at.n * at.n.transpose();
+GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
+                   const ContactScale& scale) {
+  const Mat3 P = Mat3::Identity() - n * n.transpose();
   const Vec3 f = contact.force / scale.force, rate = u / scale.rate;
-  Term row;
+  GripRows row;
+  row.value = gap / scale.length * n;
+  row.by_gap = n / scale.length;
+  row.by_n = gap / scale.length * Mat3::Identity();
   if (contact.grip == Grip::kStick) {
-    row.value = P * rate;
-    row.by_x = projected_by_x(at, rate);
+    row.by_force = scale.axial_compliance / scale.length * contact.axis * contact.axis.transpose();
+    row.value += P * rate + row.by_force * (contact.force - contact.held);
+    row.by_n += projected_by_n(n, rate);
     row.by_u = P / scale.rate;
-    row.by_f = scale.axial_compliance / scale.length * contact.axis * contact.axis.transpose();
-    row.value += row.by_f * (contact.force - contact.held);
     return row;
   }
-  row.value = P * f;
-  row.by_x = projected_by_x(at, f);
-  row.by_f = P / scale.force;
+  row.value += P * f;
+  row.by_n += projected_by_n(n, f);
+  row.by_force = P / scale.force;
   if (contact.grip == Grip::kSmooth) return row;
   // tau / |tau| with tau = P w
   const Vec3 w = f - contact.kappa * rate, tau = P * w;
@@ -40,16 +38,13 @@ Term tangential_row(const RodContact& contact, const Distance& at, const Vec3& u
   if (!(size > 0)) return row;
   const Vec3 along = tau / size;
   const Mat3 turn = (Mat3::Identity() - along * along.transpose()) / size;
-  const double mu_n = contact.friction * at.n.dot(f);
+  const double mu_n = contact.friction * n.dot(f);
   row.value -= mu_n * along;
-  row.by_x -=
-      mu_n * turn * projected_by_x(at, w) + contact.friction * along * (f.transpose() * at.H);
+  row.by_n -= mu_n * turn * projected_by_n(n, w) + contact.friction * along * f.transpose();
   row.by_u += mu_n * contact.kappa / scale.rate * turn * P;
-  row.by_f -= (mu_n * turn * P + contact.friction * along * at.n.transpose()) / scale.force;
+  row.by_force -= (mu_n * turn * P + contact.friction * along * n.transpose()) / scale.force;
   return row;
 }
-
-}  // namespace
 
 ContactWeights::ContactWeights(double xi)
     : H{(1 + 2 * xi) * (1 - xi) * (1 - xi), xi * xi * (3 - 2 * xi)},
@@ -63,33 +58,41 @@ Vec3 contact_point(double xi, double h, const ContactNode ends[2]) {
   return x;
 }
 
-ContactRows contact_rows(const RodContact& contact, const Surface& surface, double radius, double h,
-                         const ContactNode ends[2], const ContactScale& scale) {
-  const ContactWeights c(contact.xi);
-  const int count = contact.at_node() ? 1 : 2;
-  const Vec3& l = contact.lever;
-  ContactRows rows;
-  rows.slip.setZero();
-  // (6)
-  for (int a = 0; a < count; ++a) {
-    const ContactNode& end = ends[a];
-    rows.slip += c.H[a] * end.v + c.G[a] * h * end.w.cross(end.t) + c.S[a] * end.w.cross(l);
+// (6)
+Vec3 contact_velocity(double xi, const Vec3& l, const ContactEnds& ends) {
+  const ContactWeights c(xi);
+  Vec3 u = Vec3::Zero();
+  for (int a = 0; a < (xi == 0 ? 1 : 2); ++a) {
+    const ContactNode& end = ends.node[a];
+    u += c.H[a] * end.v + c.G[a] * ends.h * end.w.cross(end.t) + c.S[a] * end.w.cross(l);
   }
-  rows.at = distance_to(*surface.shape, surface.X_WC, contact_point(contact.xi, h, ends));
-  const Vec3& n = rows.at.n;
-  const double gap = (rows.at.d - radius) / scale.length;
-  const Term row = tangential_row(contact, rows.at, rows.slip, scale);
-  rows.value = gap * n + row.value;
-  const Mat3 by_x = gap * rows.at.H + n * n.transpose() / scale.length + row.by_x;
-  rows.by_force = row.by_f;
-  for (int a = 0; a < count; ++a) {
-    const ContactNode& end = ends[a];
+  return u;
+}
+
+void carry_to_ends(double xi, const Vec3& l, const ContactEnds& ends, const Mat3& by_x,
+                   const Mat3& by_u, Mat3 by_phi[2], Mat3 by_p[2]) {
+  const ContactWeights c(xi);
+  for (int a = 0; a < (xi == 0 ? 1 : 2); ++a) {
+    const ContactNode& end = ends.node[a];
     // d(w × t) = dw × t + w × (phi × t)
     const Mat3 turning = -(hat(end.t) * end.w_by_phi + hat(end.w) * hat(end.t));
-    rows.by_p[a] = c.H[a] * (by_x + end.v_by_p * row.by_u);
-    rows.by_phi[a] = -c.G[a] * h * by_x * hat(end.t) +
-                     row.by_u * (c.G[a] * h * turning - c.S[a] * hat(l) * end.w_by_phi);
+    by_p[a] = c.H[a] * (by_x + end.v_by_p * by_u);
+    by_phi[a] = -c.G[a] * ends.h * by_x * hat(end.t) +
+                by_u * (c.G[a] * ends.h * turning - c.S[a] * hat(l) * end.w_by_phi);
   }
+}
+
+ContactRows contact_rows(const RodContact& contact, const Surface& surface, double radius,
+                         const ContactEnds& ends, const ContactScale& scale) {
+  ContactRows rows;
+  rows.slip = contact_velocity(contact.xi, contact.lever, ends);
+  rows.at = distance_to(*surface.shape, surface.X_WC, contact_point(contact.xi, ends.h, ends.node));
+  const GripRows row = grip_rows(contact, rows.at.d - radius, rows.at.n, rows.slip, scale);
+  rows.value = row.value;
+  rows.by_force = row.by_force;
+  carry_to_ends(contact.xi, contact.lever, ends,
+                row.by_gap * rows.at.n.transpose() + row.by_n * rows.at.H, row.by_u, rows.by_phi,
+                rows.by_p);
   return rows;
 }
 

@@ -31,7 +31,12 @@ namespace cprsim {
 
 enum class Grip { kSmooth, kStick, kSlip };
 
-/// A solid at rest that a rod may touch.
+/// Whose unknown the force is: the rod's own, where what it touches stands still; the robot's,
+/// where that moves by unknowns too (engine/robot/contact_pair.h); or what another rod's contact
+/// with this one leaves here, the force with its sign changed.
+enum class ContactRole { kOwn, kShared, kEcho };
+
+/// A solid that a rod may touch.
 struct Surface {
   const ShapeSpec* shape = nullptr;
   Pose X_WC;
@@ -48,6 +53,14 @@ struct RodContact {
   Vec3 axis = Vec3::UnitZ();  ///< a, likewise
   Vec3 held = Vec3::Zero();   ///< f_0
   Vec3 force = Vec3::Zero();  ///< f: on the rod, world axes
+
+  ContactRole role = ContactRole::kOwn;
+  int body = -1;       ///< that carries the surface, if shared with one
+  int other_rod = -1;  ///< touched, or whose echo it is: index into Robot::rods
+  int partner = -1;    ///< the other rod's entry
+  std::size_t other_cell = 0;
+  double other_xi = 0;
+  Vec3 other_lever = Vec3::Zero();  ///< from the other centreline to its surface
 
   bool at_node() const { return xi == 0; }
 
@@ -69,6 +82,12 @@ struct ContactWeights {
   explicit ContactWeights(double xi);
 };
 
+/// The ends of a contact's cell, of length h; at a node only the first.
+struct ContactEnds {
+  ContactNode node[2];
+  double h = 0;
+};
+
 struct ContactScale {
   double length = 1, force = 1, rate = 1;  ///< L, F, U
   double axial_compliance = 0;             ///< C
@@ -81,12 +100,44 @@ struct ContactRows {
   Vec3 slip;    ///< u
 };
 
+/// (3) to (5) for a gap d - r, a normal and a slip rate.
+struct GripRows {
+  Vec3 value = Vec3::Zero(), by_gap = Vec3::Zero();
+  Mat3 by_n = Mat3::Zero(), by_u = Mat3::Zero(), by_force = Mat3::Zero();
+};
+
+GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
+                   const ContactScale& scale);
+
+/// u of (6) for a point at xi with the lever l.
+Vec3 contact_velocity(double xi, const Vec3& l, const ContactEnds& ends);
+
+/// Derivatives by the ends' (phi, dp) of what has those by x and by u of (6).
+void carry_to_ends(double xi, const Vec3& l, const ContactEnds& ends, const Mat3& by_x,
+                   const Mat3& by_u, Mat3 by_phi[2], Mat3 by_p[2]);
+
 /// Position (1) in a cell of length h.
 Vec3 contact_point(double xi, double h, const ContactNode ends[2]);
 
 /// (3) to (6). At a node only ends[0] is read.
-ContactRows contact_rows(const RodContact& contact, const Surface& surface, double radius, double h,
-                         const ContactNode ends[2], const ContactScale& scale);
+ContactRows contact_rows(const RodContact& contact, const Surface& surface, double radius,
+                         const ContactEnds& ends, const ContactScale& scale);
+
+/// Linearised motion of the ends of shared contacts' cells and what their forces F do to the rod,
+/// to be read with CondensedRod: T z + ... + T_F F, W_A = ... + WA_F F, W_B = ... + WB_F F. F are
+/// the increments of the forces of shared contacts and echoes in their order.
+struct OpenPorts {
+  /// (phi_0, dp_0, phi_1, dp_1) = by_z z + by_A zeta_A + by_F F + value
+  struct Motion {
+    Eigen::Matrix<double, 12, 6> by_z, by_A;
+    Eigen::Matrix<double, 12, Eigen::Dynamic> by_F;
+    Vec12 value;
+  };
+
+  Eigen::Matrix<double, 6, Eigen::Dynamic> T_F, WA_F, WB_F;
+  std::vector<std::size_t> contacts;  ///< index into TouchingRod::contacts() of each force
+  std::vector<Motion> motions;
+};
 
 /// What a rod lends to whoever looks for contacts.
 class TouchingRod {
@@ -100,12 +151,27 @@ class TouchingRod {
   /// What it may touch; the surfaces outlive the rod.
   virtual void set_surfaces(const std::vector<Surface>& surfaces, double radius, bool friction) = 0;
 
+  virtual const std::vector<Surface>& surfaces() const = 0;
+
+  /// Whether set_surfaces() was called: nothing below may be asked of it otherwise.
+  virtual bool may_touch() const = 0;
+
   /// Where it touches now, base to tip, one point at a node or in a cell. May be changed between
   /// solves.
   virtual std::vector<RodContact>& contacts() = 0;
 
   /// Rows at the last evaluation, in the order of contacts().
-  virtual const std::vector<ContactRows>& contact_state() const = 0;
+  virtual std::vector<ContactRows>& contact_state() = 0;
+
+  /// For contacts whose rows are formed elsewhere, at the last evaluation.
+  virtual ContactEnds contact_ends(std::size_t contact) const = 0;
+  virtual ContactScale contact_scale() const = 0;
+
+  /// As of the last linearisation.
+  virtual const OpenPorts& open_ports() const = 0;
+
+  /// Increments of the forces in the order of open_ports(), before RodModel::set_direction().
+  virtual void set_open_direction(const VecX& forces) = 0;
 
   /// Without rates slip counts from here.
   virtual void accept_contacts() = 0;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Setting up, coefficients of a solve, and the residual sweep; equations in engine/rod/cell.h.
-#include "engine/rod/shooting.h"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "engine/math/so3.h"
 #include "engine/rod/arc_grid.h"
+#include "engine/rod/shooting_open.h"
 
 namespace cprsim {
 double growth_exponent(const SectionProperties& section, const Vec3& K_bt, const Vec3& K_se,
@@ -238,7 +237,7 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
       model_.h = cell_length(c);
       NodeState end;
-      if (const RodContact* inside = contact_in(c)) add_contact_force(*inside, 0, state);
+      if (touch_) open_contacts(c, state);
       kernel_->evaluate(model_, &stages_[c * S], state, end);
       apply_load(c + 1, end);
       if (touch_) close_contacts(c + 1, end);

@@ -46,6 +46,7 @@ class ShootingRod final : public RodModel, public TouchingRod {
  public:
   ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip,
               const SectionProperties& section, double length, const ShootingOptions& options);
+  ~ShootingRod() override;
 
   /// The unloaded shape from the base frame: a straight line, or the helix of a constant rest
   /// curvature.
@@ -104,8 +105,16 @@ class ShootingRod final : public RodModel, public TouchingRod {
   const std::vector<double>& contact_grid() const override { return grid_; }
 
   void set_surfaces(const std::vector<Surface>& surfaces, double radius, bool friction) override;
+  const std::vector<Surface>& surfaces() const override;
+
+  bool may_touch() const override { return touch_ != nullptr; }
+
   std::vector<RodContact>& contacts() override;
-  const std::vector<ContactRows>& contact_state() const override;
+  std::vector<ContactRows>& contact_state() override;
+  ContactEnds contact_ends(std::size_t contact) const override;
+  ContactScale contact_scale() const override;
+  const OpenPorts& open_ports() const override;
+  void set_open_direction(const VecX& forces) override;
   void accept_contacts() override;
 
   /// State at node k (after any load there); base state before it. For tests and observation.
@@ -141,12 +150,36 @@ class ShootingRod final : public RodModel, public TouchingRod {
   }
 
   void add_contact_force(const RodContact& contact, int end, NodeState& state) const;
+  void open_contacts(std::size_t cell, NodeState& state) const;
   void close_contacts(std::size_t node, NodeState& state) const;
   void contact_residual(RodResidual& r, int& row);
   void fill_contact_tracks();
   ContactNode contact_node(const NodeState& state, std::size_t node) const;
-  void add_force_columns(const RodContact& contact, int end, const NodeState& state,
+  void add_force_columns(const RodContact& contact, int end, const NodeState& state, int column,
                          double* Y) const;
+
+  // contacts whose forces are unknowns of the robot: engine/rod/shooting_open_contact.cpp
+  struct Open;
+  struct ContactElimination;
+
+  std::size_t open_count() const;
+  void begin_open_columns();
+  void keep_open_columns(std::size_t zone);
+  void record_open_motion(std::size_t open, int end, std::size_t zone, const double* Y);
+  void add_open_force(std::size_t open, int end, const NodeState& state, double* Y);
+  void enter_open_forces(std::size_t cell, std::size_t zone, double* Y);
+  void close_open_forces(std::size_t node, std::size_t zone, double* Y);
+  bool sweep_open_columns(std::size_t cell);
+  void meet_open_columns(const RodContact& contact, const ContactRows& rows,
+                         const ContactElimination& how, std::size_t zone);
+  void orthogonalize_open_columns(std::size_t zone, const Vec3& turn, const Vec12& units,
+                                  const Eigen::Matrix<double, 12, 6>& Q);
+  void close_open_ports(const Port& base, const Port& tip);
+  void step_back_open(std::size_t zone, Vec6& z) const;
+  void meet_back_open(std::size_t zone, Vec6& z, Vec3& force) const;
+  void add_open_directions();
+  Mat6x12 base_wrench_by_state(const Port& base) const;
+  Mat6x12 tip_wrench_by_state(const Port& tip) const;
   void open_contact_columns(std::size_t cell, double* Y);
   bool meet_contact(std::size_t contact, std::size_t zone, double* Y);
 
@@ -245,6 +278,7 @@ class ShootingRod final : public RodModel, public TouchingRod {
     std::vector<Mat3> references;
     Columns opened;  ///< columns at the start of a cell with a contact
     std::vector<Vec3> kept, direction;
+    std::unique_ptr<Open> open;  ///< only while contacts are shared
   };
 
   std::unique_ptr<Touch> touch_;

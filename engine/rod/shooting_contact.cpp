@@ -9,7 +9,7 @@
 
 #include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
-#include "engine/rod/shooting.h"
+#include "engine/rod/shooting_open.h"
 
 namespace cprsim {
 namespace {
@@ -22,13 +22,6 @@ using ContactColumns = Eigen::Matrix<double, 3, kWide>;
 // rows that say (nearly) the same determine no force
 constexpr double kSameRows = 1e-15;
 
-/// f of a contact in terms of all columns.
-ContactColumns force_columns(double unit) {
-  ContactColumns E = ContactColumns::Zero();
-  E.middleCols<3>(kContactColumn) = unit * Mat3::Identity();
-  return E;
-}
-
 }  // namespace
 
 void ShootingRod::set_surfaces(const std::vector<Surface>& surfaces, double radius, bool friction) {
@@ -40,11 +33,15 @@ void ShootingRod::set_surfaces(const std::vector<Surface>& surfaces, double radi
   accept_contacts();
 }
 
+const std::vector<Surface>& ShootingRod::surfaces() const {
+  return touch_->surfaces;
+}
+
 std::vector<RodContact>& ShootingRod::contacts() {
   return touch_->contacts;
 }
 
-const std::vector<ContactRows>& ShootingRod::contact_state() const {
+std::vector<ContactRows>& ShootingRod::contact_state() {
   return touch_->rows;
 }
 
@@ -79,8 +76,14 @@ const NodeState& ShootingRod::cell_state(std::size_t cell) const {
 const RodContact* ShootingRod::contact_in(std::size_t cell) const {
   if (!touch_) return nullptr;
   for (const RodContact& contact : touch_->contacts)
-    if (contact.cell == cell && !contact.at_node()) return &contact;
+    if (contact.role == ContactRole::kOwn && contact.cell == cell && !contact.at_node())
+      return &contact;
   return nullptr;
+}
+
+void ShootingRod::open_contacts(std::size_t cell, NodeState& state) const {
+  for (const RodContact& contact : touch_->contacts)
+    if (contact.cell == cell && !contact.at_node()) add_contact_force(contact, 0, state);
 }
 
 // (2) of engine/rod/contact.h, at one end of the contact's cell.
@@ -134,41 +137,65 @@ ContactNode ShootingRod::contact_node(const NodeState& state, std::size_t node) 
   return out;
 }
 
+ContactScale ShootingRod::contact_scale() const {
+  return {scale_.length, scale_.force,
+          rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length,
+          options_.extension ? 0 : scale_.length / cells_ / section_.K_se.z()};
+}
+
+ContactEnds ShootingRod::contact_ends(std::size_t index) const {
+  const RodContact& contact = touch_->contacts[index];
+  const std::size_t k = contact.cell;
+  ContactEnds ends;
+  if (contact.at_node()) {
+    ends.node[0] = contact_node(nodes_[k], k);
+    return ends;
+  }
+  ends.node[0] = contact_node(cell_state(k), k);
+  ends.node[1] = contact_node(nodes_[k + 1], k + 1);
+  ends.h = cell_length(k);
+  return ends;
+}
+
 void ShootingRod::contact_residual(RodResidual& r, int& row) {
-  const ContactScale unit{scale_.length, scale_.force,
-                          rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length,
-                          options_.extension ? 0 : scale_.length / cells_ / section_.K_se.z()};
-  touch_->rows.clear();
-  for (const RodContact& contact : touch_->contacts) {
-    ContactNode ends[2];
-    const std::size_t k = contact.cell;
-    ends[0] = contact_node(contact.at_node() ? nodes_[k] : cell_state(k), k);
-    if (!contact.at_node()) ends[1] = contact_node(nodes_[k + 1], k + 1);
-    const double h = contact.at_node() ? 0 : cell_length(k);
-    touch_->rows.push_back(contact_rows(contact,
-                                        touch_->surfaces[static_cast<std::size_t>(contact.surface)],
-                                        touch_->radius, h, ends, unit));
-    for (double value : touch_->rows.back().value)
+  const ContactScale unit = contact_scale();
+  std::vector<ContactRows>& rows = touch_->rows;
+  rows.resize(touch_->contacts.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RodContact& contact = touch_->contacts[i];
+    rows[i].slip.setZero();
+    if (contact.role != ContactRole::kOwn) continue;
+    rows[i] = contact_rows(contact, touch_->surfaces[static_cast<std::size_t>(contact.surface)],
+                           touch_->radius, contact_ends(i), unit);
+    for (double value : rows[i].value)
       add_row(r, value, row++);
   }
 }
 
+/// @param column of Y from which on the force's own columns stand; -1: only its turning with the
+/// rod
 void ShootingRod::add_force_columns(const RodContact& contact, int end, const NodeState& state,
-                                    double* Y0) const {
+                                    int column, double* Y0) const {
   ColumnsMap Y(Y0, 12, columns_);
   const ContactWeights weights(contact.xi);
   const double hG = contact.at_node() ? 0 : cell_length(contact.cell) * weights.G[end];
-  const ContactColumns E = force_columns(port_scale_.force);
   const Mat3 t = hat(rotation_of(state).col(2));
   // d(t × f) = (phi × t) × f + t × df
-  Y.middleRows<3>(6) -= weights.H[end] * E;
-  Y.middleRows<3>(9) -= hG * hat(contact.force) * t * Y.topRows<3>() +
-                        (hG * t + weights.S[end] * hat(contact.lever)) * E;
+  if (hG != 0) Y.middleRows<3>(9) -= hG * hat(contact.force) * t * Y.topRows<3>();
+  if (column < 0) return;
+  const double unit = port_scale_.force;
+  Y.block<3, 3>(6, column) -= weights.H[end] * unit * Mat3::Identity();
+  Y.block<3, 3>(9, column) -= unit * (hG * t + weights.S[end] * hat(contact.lever));
 }
 
 void ShootingRod::open_contact_columns(std::size_t cell, double* Y) {
+  const RodContact& contact = *contact_in(cell);
   touch_->opened.assign(Y, Y + 12 * kWide);
-  add_force_columns(*contact_in(cell), 0, cell_state(cell), Y);
+  add_force_columns(contact, 0, cell_state(cell), kContactColumn, Y);
+  if (open_count() == 0) return;
+  touch_->open->opened = touch_->open->blocks;
+  for (Open::Block& block : touch_->open->blocks)
+    add_force_columns(contact, 0, cell_state(cell), -1, block.data());
 }
 
 bool ShootingRod::meet_contact(std::size_t index, std::size_t zone, double* Y0) {
@@ -177,7 +204,8 @@ bool ShootingRod::meet_contact(std::size_t index, std::size_t zone, double* Y0) 
   const ContactRows& rows = touch_->rows[index];
   const std::size_t node = contact.closing_node();
   const int last = contact.at_node() ? 0 : 1;
-  ContactColumns C = rows.by_force * force_columns(port_scale_.force);
+  ContactColumns C = ContactColumns::Zero();
+  C.middleCols<3>(kContactColumn) = port_scale_.force * rows.by_force;
   C += rows.by_p[last] * Y.middleRows<3>(3) + rows.by_phi[last] * Y.topRows<3>();
   if (!contact.at_node()) {
     const ConstColumnsMap opened(touch_->opened.data(), 12, kWide);
@@ -185,7 +213,7 @@ bool ShootingRod::meet_contact(std::size_t index, std::size_t zone, double* Y0) 
   }
   constexpr int kAffine = 12;
   C.col(kAffine) += rows.value;
-  add_force_columns(contact, last, nodes_[node], Y0);
+  add_force_columns(contact, last, nodes_[node], kContactColumn, Y0);
   // (1); TallQr takes three more rows that concern nothing
   TallQr::Mat12x6 A = TallQr::Mat12x6::Zero();
   A.topLeftCorner<6, 3>() = C.leftCols<6>().transpose();
@@ -210,6 +238,7 @@ bool ShootingRod::meet_contact(std::size_t index, std::size_t zone, double* Y0) 
   rec.f = unit * held.block<3, 1>(6, 6);
   const TallQr::Mat12x6 Y_z = Y.leftCols<6>();
   const Eigen::Matrix<double, 12, 3> Y_f = Y.middleCols<3>(kContactColumn);
+  if (open_count() > 0) meet_open_columns(contact, rows, {lower, qr.Q1, Y_z, Y_f}, zone);
   Y.leftCols<6>() = Y_z * rec.N + Y_f * (rec.F / unit);
   Y.middleCols<6>(6) += Y_z * rec.P_A + Y_f * (rec.F_A / unit);
   Y.col(kAffine) += Y_z * rec.p + Y_f * (rec.f / unit);

@@ -5,7 +5,7 @@
 
 #include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
-#include "engine/rod/shooting.h"
+#include "engine/rod/shooting_open.h"
 
 namespace cprsim {
 namespace {
@@ -113,6 +113,7 @@ void ShootingRod::orthonormalize(std::size_t zone, const Vec12& mismatch, double
     Y.middleCols<6>(6) = d.asDiagonal() * Y_A;
   }
   Y.leftCols<6>() = d.asDiagonal() * qr.Q1;
+  if (open_count() > 0) orthogonalize_open_columns(zone, mismatch.head<3>(), d, qr.Q1);
 }
 
 void ShootingRod::cut_zones() {
@@ -120,7 +121,8 @@ void ShootingRod::cut_zones() {
   std::size_t contact = 0, segment = 1;
   for (std::size_t node = 0; node <= static_cast<std::size_t>(cells_); ++node) {
     for (; contact < contact_count() && touch_->contacts[contact].closing_node() == node; ++contact)
-      boundaries_.push_back({node, -1, static_cast<int>(contact)});
+      if (touch_->contacts[contact].role == ContactRole::kOwn)
+        boundaries_.push_back({node, -1, static_cast<int>(contact)});
     if (segment + 1 < segment_first_.size() && segment_first_[segment] == node)
       boundaries_.push_back({node, static_cast<int>(segment++), -1});
   }
@@ -153,18 +155,25 @@ bool ShootingRod::sweep_columns(const Port& base) {
   recombinations_.resize(zones);
   cell_directions_.resize(static_cast<std::size_t>(cells_) * lifted * width);
   transition_ = 0;
+  if (touch_) begin_open_columns();
+  const bool open = open_count() > 0;
   alignas(64) double Y[12 * kWide];
   start_columns(base, Y);
   for (std::size_t g = 0; g < zones; ++g) {
     zone_start_columns_[g].assign(Y, Y + 12 * width);
+    if (open) keep_open_columns(g);
     if (g == 0) apply_load_columns(0, starts_.front(), Y);
+    if (g == 0 && open) close_open_forces(0, 0, Y);
     for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
       model_.h = cell_length(c);
       if (contact_in(c)) open_contact_columns(c, Y);
+      if (open) enter_open_forces(c, g, Y);
       if (!linearize(model_, &stages_[c * S], cell_state(c), nodes_[c + 1], Y,
                      &cell_directions_[c * lifted * width]))
         return false;
+      if (open && !sweep_open_columns(c)) return false;
       apply_load_columns(c + 1, nodes_[c + 1], Y);
+      if (open) close_open_forces(c + 1, g, Y);
     }
     if (g + 1 < zones && !cross_boundary(g, Y)) return false;
   }
@@ -178,6 +187,7 @@ bool ShootingRod::linearize(const Port& base, const Port& tip, CondensedRod& out
   if (!sweep_columns(base)) return false;
   close_tip(tip, zone_start_columns_.back().data(), out);
   close_base(base, out);
+  if (open_count() > 0) close_open_ports(base, tip);
   out.growth = transition_;
   return true;
 }
@@ -200,18 +210,33 @@ void ShootingRod::close_tip(const Port& tip, const double* Y0, CondensedRod& out
   out.WB_B.setZero();
   out.wb.setZero();
   if (!tip_.held()) return;
-  // on the body: force -n, moment -(m + r × n), r from the body's reference point to the rod's end
-  const Vec3 n = force_of(end);
-  const Vec3 r = position_of(end) - tip.p + tip.arm;
-  Mat6x12 W = Mat6x12::Zero();
-  W.block<3, 3>(0, 3) = hat(n);
-  W.block<3, 3>(0, 6) = -hat(r);
-  W.block<3, 3>(0, 9) = -Mat3::Identity();
-  W.block<3, 3>(3, 6) = -Mat3::Identity();
+  const Mat6x12 W = tip_wrench_by_state(tip);
   out.WB_z = W * Y_z;
   out.WB_A = W * Y_A;
-  out.WB_B.block<3, 3>(0, 3) = -hat(n);
+  out.WB_B.block<3, 3>(0, 3) = -hat(force_of(end));
   out.wb = wrench_on_tip(tip) + W * y;
+}
+
+// On the body: force -n, moment -(m + r × n), r from the body's reference point to the rod's end.
+Mat6x12 ShootingRod::tip_wrench_by_state(const Port& tip) const {
+  Mat6x12 W = Mat6x12::Zero();
+  if (!tip_.held()) return W;
+  const NodeState& end = nodes_.back();
+  W.block<3, 3>(0, 3) = hat(force_of(end));
+  W.block<3, 3>(0, 6) = -hat(position_of(end) - tip.p + tip.arm);
+  W.block<3, 3>(0, 9) = -Mat3::Identity();
+  W.block<3, 3>(3, 6) = -Mat3::Identity();
+  return W;
+}
+
+Mat6x12 ShootingRod::base_wrench_by_state(const Port& base) const {
+  const NodeState& start = starts_.front();
+  Mat6x12 W = Mat6x12::Zero();
+  W.block<3, 3>(0, 3) = -hat(force_of(start));
+  W.block<3, 3>(0, 6) = hat(position_of(start) - base.p + base.arm);
+  W.block<3, 3>(0, 9) = Mat3::Identity();
+  W.block<3, 3>(3, 6) = Mat3::Identity();
+  return W;
 }
 
 // The wrench on the base's body needs z at the first segment: back through the recombinations.
@@ -236,19 +261,12 @@ void ShootingRod::close_base(const Port& base, CondensedRod& out) const {
     z0 = (rec.N * z0 + rec.p).eval();
   }
   const ConstColumnsMap Y(zone_start_columns_.front().data(), 12, columns_);
-  const NodeState& start = starts_.front();
-  const Vec3 n = force_of(start);
-  const Vec3 r = position_of(start) - base.p + base.arm;
-  Mat6x12 W = Mat6x12::Zero();
-  W.block<3, 3>(0, 3) = -hat(n);
-  W.block<3, 3>(0, 6) = hat(r);
-  W.block<3, 3>(0, 9) = Mat3::Identity();
-  W.block<3, 3>(3, 6) = Mat3::Identity();
+  const Mat6x12 W = base_wrench_by_state(base);
   const Mat6 W_z = W * Mat12x6(Y.leftCols<6>());
   out.WA_z = W_z * Z;
   out.WA_A = W * Mat12x6(Y.middleCols<6>(6));
   out.WA_A += W_z * Z_A;
-  out.WA_A.block<3, 3>(0, 3) += hat(n);
+  out.WA_A.block<3, 3>(0, 3) += hat(force_of(starts_.front()));
   out.wa = wrench_on_base(base) + W * Vec12(Y.col(affine_column(columns_)));
   out.wa += W_z * z0;
 }
@@ -275,6 +293,7 @@ void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
   const int affine = affine_column(columns_);
   start_direction_.resize(starts_.size());
   lifted_direction_.resize(static_cast<std::size_t>(cells_) * lifted);
+  const bool open = open_count() > 0;
   if (touch_) touch_->direction.resize(contact_count());
   Vec6 z_g = z;
   VecX weights = VecX::Zero(columns_);
@@ -284,12 +303,15 @@ void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
     if (g < boundaries_.size()) {
       const Recombination& rec = recombinations_[g];
       z_g -= rec.G_A * zeta_A + rec.g;
+      if (open) step_back_open(g, z_g);
       rec.R.triangularView<Eigen::Upper>().solveInPlace(z_g);
       if (boundaries_[g].contact >= 0) {
-        const Vec3 df = rec.F * z_g + rec.F_A * zeta_A + rec.f;
+        Vec3 df = rec.F * z_g + rec.F_A * zeta_A + rec.f;
+        Vec6 z_met = rec.N * z_g + rec.P_A * zeta_A + rec.p;
+        if (open) meet_back_open(g, z_met, df);
         touch_->direction[static_cast<std::size_t>(boundaries_[g].contact)] = df;
         weights.segment<3>(kContactColumn) = df / port_scale_.force;
-        z_g = (rec.N * z_g + rec.P_A * zeta_A + rec.p).eval();
+        z_g = z_met;
       }
     }
     weights.head<6>() = z_g;
@@ -307,6 +329,7 @@ void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
       }
     }
   }
+  if (open) add_open_directions();
 }
 
 void ShootingRod::keep() {

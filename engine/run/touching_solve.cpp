@@ -39,6 +39,7 @@ SolveReport load_gradually(RodContacts& contacts, Equations& equations,
   SolveReport total = solve_statics(equations, options);
   equations.set_loads(true);
   if (!total.converged()) return total;
+  equations.accept_contacts();  // slip counts from the assembled robot
   double carried = 0, step = 1;
   while (carried < 1) {
     const RobotUnknowns from = equations.unknowns();

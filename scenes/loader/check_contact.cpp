@@ -22,15 +22,38 @@ bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b) {
   return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
 }
 
+/// Bodies that a rod or a joint holds, by themselves or welded to others; the rest fly freely.
+std::vector<bool> held_bodies(const Scene& scene) {
+  std::vector<bool> held(scene.bodies.size(), false);
+  const auto hold = [&](int body) {
+    if (body != kWorld) held[static_cast<std::size_t>(body)] = true;
+  };
+  for (const RodSpec& rod : scene.rods) {
+    if (rod.base.joint != EndJoint::kFree) hold(rod.base.at.body);
+    if (rod.tip.joint != EndJoint::kFree) hold(rod.tip.at.body);
+  }
+  for (const JointSpec& joint : scene.joints) {
+    hold(joint.parent);
+    hold(joint.child);
+  }
+  return held;
+}
+
 class ContactCheck {
  public:
-  explicit ContactCheck(Reading& r) : r_(r), fixed_(fixed_bodies(r.scene)) {}
+  explicit ContactCheck(Reading& r)
+      : r_(r), fixed_(fixed_bodies(r.scene)), held_(held_bodies(r.scene)) {}
 
   void run() {
     const Scene& scene = r_.scene;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       for (const ColliderSpec& collider : scene.bodies[b].colliders)
-        if (met(collider)) check(collider, scene.bodies[b].name, fixed_[b]);
+        if (met(collider)) check(collider, scene.bodies[b].name, fixed_[b] || held_[b]);
+    for (std::size_t a = 0; a < scene.rods.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        if (touches(scene.rods[a]) && touches(scene.rods[b]) &&
+            may_touch(scene.rods[a].surface, scene.rods[b].surface))
+          obstacles_ = true;
     if (!obstacles_) return;
     if (scene.planar_normal)
       complain(scene.simulation.place, 19, "contact of rods is not available in a <planar> scene",
@@ -56,11 +79,11 @@ class ContactCheck {
            });
   }
 
-  void check(const ColliderSpec& collider, const std::string& body, bool fixed) {
+  void check(const ColliderSpec& collider, const std::string& body, bool within_reach) {
     const std::string name = "'" + body + "::" + collider.name + "'";
-    if (!fixed) {
+    if (!within_reach) {
       r_.report.at(Severity::kWarning, "W506", collider.place, kCollisionCaret,
-                   "rods pass through " + name + ", which moves: they touch what stands still");
+                   "rods pass through " + name + ", which flies freely: they touch what stands still or is held");
       return;
     }
     obstacles_ = true;
@@ -76,7 +99,7 @@ class ContactCheck {
   }
 
   Reading& r_;
-  std::vector<bool> fixed_;
+  std::vector<bool> fixed_, held_;
   bool obstacles_ = false;
 };
 

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distances from what contacts of rods meet: shapes that stand still or ride on a body, and other
+// rods, whose nearest point is found on the Hermite curve through its nodes,
+//   f(xi) = (c(xi) - x) . c'(xi) = 0                                                       (1)
+// by Newton's method, by halves where that would leave the bracket.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/robot/contacts.h"
+
+namespace cprsim {
+namespace {
+
+/// Coefficients of a cell's cubic: c = a + b xi + e xi² + g xi³.
+struct Cubic {
+  Vec3 a, b, e, g;
+
+  Cubic(const NodeState& from, const NodeState& to, double h) {
+    const Vec3 p = position_of(from), t0 = h * rotation_of(from).col(2),
+               t1 = h * rotation_of(to).col(2), chord = position_of(to) - p;
+    a = p;
+    b = t0;
+    e = 3 * chord - 2 * t0 - t1;
+    g = t0 + t1 - 2 * chord;
+  }
+
+  Vec3 at(double xi) const { return a + xi * (b + xi * (e + xi * g)); }
+
+  Vec3 slope(double xi) const { return b + xi * (2 * e + xi * 3 * g); }
+
+  Vec3 bend(double xi) const { return 2 * e + xi * 6 * g; }
+};
+
+/// Where (1) holds between lower and upper, f being negative below and positive above.
+double root(const Cubic& c, const Vec3& x, double lower, double upper) {
+  double xi = 0.5 * (lower + upper);
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 gap = c.at(xi) - x, slope = c.slope(xi);
+    const double f = gap.dot(slope), by_xi = slope.squaredNorm() + gap.dot(c.bend(xi));
+    (f > 0 ? upper : lower) = xi;
+    double next = xi - f / by_xi;
+    if (!(next > lower && next < upper)) next = 0.5 * (lower + upper);
+    if (std::abs(next - xi) < 1e-15) break;
+    xi = next;
+  }
+  return xi;
+}
+
+/// Nearest point of one cell: samples tell where to look for roots. @return squared distance
+double nearest_in(const Cubic& c, const Vec3& x, double& xi) {
+  constexpr int kSamples = 4;
+  double best = std::numeric_limits<double>::infinity();
+  const auto look = [&](double at) {
+    const double d = (c.at(at) - x).squaredNorm();
+    if (d >= best) return;
+    best = d;
+    xi = at;
+  };
+  const auto f = [&](double at) { return (c.at(at) - x).dot(c.slope(at)); };
+  look(0);
+  look(1);
+  double before = f(0);
+  for (int i = 1; i <= kSamples; ++i) {
+    const double at = static_cast<double>(i) / kSamples, now = f(at);
+    if (before < 0 && now > 0) look(root(c, x, at - 1.0 / kSamples, at));
+    if (now == 0) look(at);
+    before = now;
+  }
+  return best;
+}
+
+}  // namespace
+
+RodContacts::Foot RodContacts::foot(const Rod& other, const Vec3& x) const {
+  const std::vector<NodeState>& nodes = other.side->contact_nodes();
+  double best = std::numeric_limits<double>::infinity();
+  for (const NodeState& node : nodes)
+    best = std::min(best, (position_of(node) - x).norm());
+  Foot out;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
+    const double h = length(other, c);
+    // a curve through both ends leads no nearer than this
+    const double bound = 0.5 * ((position_of(nodes[c]) - x).norm() +
+                                (position_of(nodes[c + 1]) - x).norm() - 1.1 * h);
+    if (bound > best) continue;
+    const Cubic cubic(nodes[c], nodes[c + 1], h);
+    double xi = 0;
+    const double d = std::sqrt(nearest_in(cubic, x, xi));
+    best = std::min(best, d);
+    if (d >= least) continue;
+    least = d;
+    out.cell = c;
+    out.xi = xi;
+    const Vec3 gap = x - cubic.at(xi);
+    out.at.d = d - other.radius;
+    out.at.n = d > 0 ? Vec3(gap / d) : Vec3(rotation_of(nodes[c]).col(0));
+    out.at.H = (Mat3::Identity() - out.at.n * out.at.n.transpose()) / std::max(d, other.radius);
+    const bool end = (c == 0 && xi == 0) || (c + 2 == nodes.size() && xi == 1);
+    if (end) continue;
+    const Vec3 t = cubic.slope(xi).normalized();
+    out.at.H -= t * t.transpose() / std::max(d, other.radius);
+  }
+  return out;
+}
+
+Distance RodContacts::distance_from(const Obstacle& obstacle, const Vec3& x) const {
+  if (obstacle.rod >= 0) return foot(rods_[static_cast<std::size_t>(obstacle.rod)], x).at;
+  const Surface& surface = obstacle.surface;
+  const Pose X_WC =
+      obstacle.body < 0 ? surface.X_WC : robot_.body_pose(obstacle.body) * surface.X_WC;
+  return distance_to(*surface.shape, X_WC, x);
+}
+
+/// Puts the other side of a contact where it is nearest. @return whether it was elsewhere
+bool RodContacts::place_foot(const Rod& rod, RodContact& contact) const {
+  const int index = rod.obstacles[static_cast<std::size_t>(contact.surface)].rod;
+  if (index < 0) return false;
+  const Rod& other = rods_[static_cast<std::size_t>(index)];
+  const Foot now = foot(other, point(rod, contact.cell, contact.xi));
+  const double by = static_cast<double>(now.cell) + now.xi -
+                    static_cast<double>(contact.other_cell) - contact.other_xi;
+  const bool elsewhere = contact.other_rod < 0 || now.cell != contact.other_cell ||
+                         std::abs(by) * length(other, now.cell) > kSlide * other.radius;
+  contact.other_rod = static_cast<int>(other.index);
+  contact.other_cell = now.cell;
+  contact.other_xi = now.xi;
+  contact.other_lever = -other.radius / rod.radius * contact.lever;
+  return elsewhere;
+}
+
+}  // namespace cprsim
