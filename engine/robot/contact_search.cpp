@@ -208,7 +208,7 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
 
 // To where the rod is nearest now, along its cell or on to the next; points on a plane stay at
 // their nodes. @return whether it was elsewhere
-bool RodContacts::slide(const Rod& rod, RodContact& contact) const {
+bool RodContacts::slide(Rod& rod, RodContact& contact) const {
   const auto obstacle = static_cast<std::size_t>(contact.surface);
   const std::size_t cells = rod.side->contact_nodes().size() - 1;
   std::size_t cell = contact.cell;
@@ -233,14 +233,40 @@ bool RodContacts::slide(const Rod& rod, RodContact& contact) const {
     }
     xi = std::clamp(xi, kEdge, 1.0);
   }
-  const double by = static_cast<double>(cell) + xi - static_cast<double>(contact.cell) - contact.xi;
+  const double at = static_cast<double>(contact.cell) + contact.xi;
+  const double by = static_cast<double>(cell) + xi - at;
+  const bool elsewhere = std::abs(by) * length(rod, cell) > kSlide * rod.radius;
+  if (elsewhere) leap(rod, contact, by, cell, xi);
   contact.cell = cell;
   contact.xi = xi;
-  return std::abs(by) * length(rod, cell) > kSlide * rod.radius;
+  return elsewhere;
+}
+
+// A force that moves after the point it pushes away may never catch up with it: from the second
+// move of a solve on, the secant method tells where both agree.
+void RodContacts::leap(Rod& rod, const RodContact& contact, double by, std::size_t& cell,
+                       double& xi) const {
+  const double at = static_cast<double>(contact.cell) + contact.xi;
+  const auto last = std::find_if(rod.slides.begin(), rod.slides.end(), [&](const Slide& slide) {
+    return slide.surface == contact.surface && slide.to == at;
+  });
+  Slide now{contact.surface, at, by, 0};
+  if (last != rod.slides.end()) {
+    const double step = -by * (at - last->from) / (by - last->by);
+    if (std::isfinite(step)) {
+      const double to = at + std::clamp(step, -2 * std::abs(by), 2 * std::abs(by));
+      const auto cells = static_cast<double>(rod.side->contact_nodes().size() - 1);
+      cell = static_cast<std::size_t>(std::clamp(to, 0.0, cells - 1));
+      xi = std::clamp(to - static_cast<double>(cell), kEdge, 1 - kEdge / 2);
+    }
+    rod.slides.erase(last);
+  }
+  now.to = static_cast<double>(cell) + xi;
+  rod.slides.push_back(now);
 }
 
 /// Moves a contact to where the rod now is nearest. @return whether it was elsewhere
-bool RodContacts::follow(const Rod& rod, RodContact& contact, const ContactRows& rows) const {
+bool RodContacts::follow(Rod& rod, RodContact& contact, const ContactRows& rows) const {
   const Vec3 lever = -rod.radius * rows.at.n;
   const bool turned = contact.friction > 0 && (lever - contact.lever).norm() > 1e-6 * rod.radius;
   contact.lever = lever;

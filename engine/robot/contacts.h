@@ -89,6 +89,13 @@ class RodContacts {
     double clearance = 0;                   ///< nothing is nearer, m
   };
 
+  /// A contact that was moved to where its rod was nearest, positions in cells: it had been off by
+  /// `by`.
+  struct Slide {
+    int surface = -1;
+    double from = 0, by = 0, to = 0;
+  };
+
   /// The nearest point of a rod's centreline.
   struct Foot {
     std::size_t cell = 0;
@@ -104,6 +111,7 @@ class RodContacts {
     std::vector<Obstacle> obstacles;
     Scan scan, start;
     std::vector<RodContact> before;
+    std::vector<Slide> slides;  ///< of the present solve
   };
 
   /// A change that revise() would like to make.
@@ -142,8 +150,9 @@ class RodContacts {
   bool far_away(const Rod& rod) const;
   void scan(Rod& rod) const;
   bool held(const Rod& rod, std::size_t node) const;
-  bool follow(const Rod& rod, RodContact& contact, const ContactRows& rows) const;
-  bool slide(const Rod& rod, RodContact& contact) const;
+  bool follow(Rod& rod, RodContact& contact, const ContactRows& rows) const;
+  bool slide(Rod& rod, RodContact& contact) const;
+  void leap(Rod& rod, const RodContact& contact, double by, std::size_t& cell, double& xi) const;
   bool pulls_most(const Rod& rod, std::size_t contact) const;
   void review(std::size_t rod, std::vector<Change>& changes) const;
   void search(std::size_t rod, std::vector<Change>& changes) const;

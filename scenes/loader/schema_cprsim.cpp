@@ -112,7 +112,7 @@ std::vector<ElementRule> run_elements() {
       {kEffects, "damping", "effect", T::kEmpty, "", '?', S::kSupported,
        "Kelvin-Voigt damping of rods."},
       {kEffects, "contact", "effect", T::kEmpty, "", '?', S::kSupported,
-       "Between rigid bodies, and of rods with obstacles that stand still."},
+       "Between rigid bodies, of rods with what stands still or is held, and of rods."},
       {kEffects, "friction", "effect", T::kEmpty, "", '?', S::kSupported, "In contacts."},
       {kEffects, "drag", "effect", T::kEmpty, "", '?', S::kLater, "Fluid drag."},
       {kEffects, "self_contact", "effect", T::kEmpty, "", '?', S::kLater, "Of rods."},
