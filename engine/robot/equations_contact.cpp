@@ -5,6 +5,7 @@
 //   moment -(y - p) × f, force -f,   y = x + l                                              (1)
 #include <algorithm>
 
+#include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
 #include "engine/robot/equations.h"
 
@@ -125,6 +126,7 @@ int Equations::number_pairs(int offset) {
     e.signs.clear();
     const OpenPorts* ports = open_ports(r);
     if (!ports) continue;
+    if (!e.delayed) e.z_F = -solve_columns(condensed_[r].T, ports->T_F);
     const std::vector<RodContact>& contacts = robot_.rods[r].model->touching()->contacts();
     for (std::size_t i : ports->contacts) {
       const RodContact& contact = contacts[i];
@@ -216,6 +218,14 @@ void Equations::assemble_pairs() {
   }
   for (std::size_t r = 0; r < robot_.rods.size(); ++r)
     assemble_open_forces(r);
+}
+
+// Force that moves a body by the unit of length: rods' stiffness, or its own inertia over the step.
+double Equations::force_unit(int body) const {
+  if (body < 0) return robot_.scale.force;
+  const double inertia =
+      robot_.bodies[static_cast<std::size_t>(body)].mass * rates_.c_v * rates_.c_w;
+  return std::max(robot_.scale.force, inertia * robot_.scale.length);
 }
 
 void Equations::pair_units(VecX& columns) const {

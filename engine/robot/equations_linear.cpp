@@ -71,11 +71,8 @@ bool Equations::condense(bool keep_all) {
       e.z_A.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_A.topLeftCorner<N, N>()));
     if (rod.tip_held && rod.tip.body >= 0)
       e.z_B.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_B.topLeftCorner<N, N>()));
-    if constexpr (N == 6)
-      if (const OpenPorts* ports = open_ports(i)) e.z_F = -lu.solve(ports->T_F);
   }
-  if (robot_.rods_meet) offset = number_pairs(offset);
-  size_ = offset;
+  size_ = robot_.rods_meet ? number_pairs(offset) : offset;
   return true;
 }
 
@@ -231,14 +228,6 @@ void Equations::assemble() {
   else
     assemble_parts<6>();
   if (!pairs_.empty()) assemble_pairs();
-}
-
-// Force that moves a body by the unit of length: rods' stiffness, or its own inertia over the step.
-double Equations::force_unit(int body) const {
-  if (body < 0) return robot_.scale.force;
-  const double inertia =
-      robot_.bodies[static_cast<std::size_t>(body)].mass * rates_.c_v * rates_.c_w;
-  return std::max(robot_.scale.force, inertia * robot_.scale.length);
 }
 
 VecX Equations::column_units() const {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Setting up, coefficients of a solve, and the residual sweep; equations in engine/rod/cell.h.
+#include "engine/rod/shooting.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>

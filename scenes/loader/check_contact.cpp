@@ -83,7 +83,8 @@ class ContactCheck {
     const std::string name = "'" + body + "::" + collider.name + "'";
     if (!within_reach) {
       r_.report.at(Severity::kWarning, "W506", collider.place, kCollisionCaret,
-                   "rods pass through " + name + ", which flies freely: they touch what stands still or is held");
+                   "rods pass through " + name +
+                       ", which flies freely: they touch what stands still or is held");
       return;
     }
     obstacles_ = true;
