@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "collision/convert.h"
+#include "engine/model/flight.h"
 
 namespace cprsim {
 namespace {
@@ -46,10 +47,6 @@ void apply(btManifoldPoint& point, const SurfaceSpec& a, const SurfaceSpec& b, b
 }
 
 }  // namespace
-
-bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b) {
-  return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
-}
 
 bool may_touch(const Contactor& a, const Contactor& b) {
   if (!a.free && !b.free) return false;

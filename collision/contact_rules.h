@@ -20,8 +20,6 @@ struct Contactor {
   bool free = false;                  ///< integrated by Bullet
 };
 
-bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b);
-
 /// True if some of their colliders may touch and one of the two is free.
 bool may_touch(const Contactor& a, const Contactor& b);
 

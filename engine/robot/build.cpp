@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/math/so3.h"
+#include "engine/model/flight.h"
 #include "engine/model/planar.h"
 #include "engine/robot/robot.h"
 
@@ -43,7 +44,8 @@ class Welds {
   std::vector<std::size_t> parent_;
 };
 
-// A group of links is part of the Newton system if a joint or a rod holds any of it: links welded
+// A group of links is part of the Newton system if a joint or a rod holds any of it, or if it flies
+// among rods: links welded
 // to each other and to nothing else are one body of it, not several free ones.
 std::vector<char> held_groups(const Scene& scene, const Welds& welds) {
   std::vector<char> held(scene.bodies.size() + 1, 0);
@@ -56,6 +58,9 @@ std::vector<char> held_groups(const Scene& scene, const Welds& welds) {
     if (rod.base.joint != EndJoint::kFree) hold(rod.base.at.body);
     if (rod.tip.joint != EndJoint::kFree) hold(rod.tip.at.body);
   }
+  const std::vector<char> among_rods = bodies_among_rods(scene);
+  for (std::size_t i = 0; i < among_rods.size(); ++i)
+    if (among_rods[i]) hold(static_cast<int>(i));
   return held;
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/model/flight.h"
+
 namespace cprsim {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr int kPatience = 12;
 /// Before: contacts within a cell come after the node at its start.
 double order(const RodContact& contact) {
   return static_cast<double>(contact.cell) + (contact.at_node() ? 0 : 0.5);
-}
-
-bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b) {
-  return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/math/so3.h"
+#include "engine/model/flight.h"
 
 namespace cprsim {
 
@@ -27,6 +28,9 @@ Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_
   size_ = offset;
   loops_ = robot.has_joint_loops();
   note_bodies();
+  const std::vector<char> among_rods = bodies_among_rods(*robot.scene);
+  for (const RigidBody& body : robot.bodies)
+    flies_.push_back(among_rods[static_cast<std::size_t>(body.links.front())]);
 }
 
 PointLoad Equations::scaled_load(const LoadSpec& load) const {
@@ -324,6 +328,8 @@ ProblemResidual Equations::evaluate() {
   add_body_loads();
   add_rod_wrenches();
   add_joint_wrenches();
+  for (std::size_t b = 0; b < wrench_.size(); ++b)
+    if (stands_still(b)) wrench_[b].setZero();
   if (!bodies_held_) {
     // inertia turns position round-off into forces, see ShootingRod::prepare
     constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();

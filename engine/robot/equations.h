@@ -141,10 +141,15 @@ class Equations final : public Problem {
   };
 
   void note_bodies();
+
+  /// Bodies in flight stand still in statics: nothing holds them.
+  bool stands_still(std::size_t body) const { return flies_[body] && !rates_.dynamic(); }
+
   void find_pairs();
   void evaluate_pairs(ProblemResidual& r);
   int number_pairs(int offset);
   void assemble_pairs();
+  void hold_still_bodies();
   void assemble_open_forces(std::size_t rod);
   void pair_units(VecX& columns) const;
   Vec6 distribute_forces(std::size_t rod);
@@ -214,6 +219,7 @@ class Equations final : public Problem {
   std::vector<Vec6> joint_gap_;
   std::vector<Pose> marked_;
   std::vector<Pair> pairs_;
+  std::vector<char> flies_;      ///< bodies that nothing holds
   std::vector<Pose> slip_from_;  ///< bodies, where slip counts from without rates
   Worst worst_;
   double worst_size_ = 0;

@@ -220,6 +220,16 @@ void Equations::assemble_pairs() {
     assemble_open_forces(r);
 }
 
+void Equations::hold_still_bodies() {
+  for (std::size_t b = 0; b < flies_.size(); ++b) {
+    if (!stands_still(b)) continue;
+    const auto at = 6 * static_cast<Eigen::Index>(b);
+    J_.middleRows<6>(at).setZero();
+    J_.block<6, 6>(at, at).setIdentity();
+    r_.segment<6>(at).setZero();
+  }
+}
+
 // Force that moves a body by the unit of length: rods' stiffness, or its own inertia over the step.
 double Equations::force_unit(int body) const {
   if (body < 0) return robot_.scale.force;

@@ -228,6 +228,7 @@ void Equations::assemble() {
   else
     assemble_parts<6>();
   if (!pairs_.empty()) assemble_pairs();
+  if (robot_.rods_meet) hold_still_bodies();
 }
 
 VecX Equations::column_units() const {

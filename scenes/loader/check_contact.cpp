@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/model/distance.h"
+#include "engine/model/flight.h"
 #include "scenes/loader/reading.h"
 
 namespace cprsim {
@@ -18,37 +19,16 @@ bool touches(const RodSpec& rod) {
   return std::find(rod.without.begin(), rod.without.end(), "contact") == rod.without.end();
 }
 
-bool may_touch(const SurfaceSpec& a, const SurfaceSpec& b) {
-  return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
-}
-
-/// Bodies that a rod or a joint holds, by themselves or welded to others; the rest fly freely.
-std::vector<bool> held_bodies(const Scene& scene) {
-  std::vector<bool> held(scene.bodies.size(), false);
-  const auto hold = [&](int body) {
-    if (body != kWorld) held[static_cast<std::size_t>(body)] = true;
-  };
-  for (const RodSpec& rod : scene.rods) {
-    if (rod.base.joint != EndJoint::kFree) hold(rod.base.at.body);
-    if (rod.tip.joint != EndJoint::kFree) hold(rod.tip.at.body);
-  }
-  for (const JointSpec& joint : scene.joints) {
-    hold(joint.parent);
-    hold(joint.child);
-  }
-  return held;
-}
-
 class ContactCheck {
  public:
   explicit ContactCheck(Reading& r)
-      : r_(r), fixed_(fixed_bodies(r.scene)), held_(held_bodies(r.scene)) {}
+      : r_(r), flying_(flying_bodies(r.scene)), among_rods_(bodies_among_rods(r.scene)) {}
 
   void run() {
     const Scene& scene = r_.scene;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       for (const ColliderSpec& collider : scene.bodies[b].colliders)
-        if (met(collider)) check(collider, scene.bodies[b].name, fixed_[b] || held_[b]);
+        if (met(collider)) check(collider, scene.bodies[b].name, !flying_[b] || among_rods_[b]);
     for (std::size_t a = 0; a < scene.rods.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)
         if (touches(scene.rods[a]) && touches(scene.rods[b]) &&
@@ -84,7 +64,8 @@ class ContactCheck {
     if (!within_reach) {
       r_.report.at(Severity::kWarning, "W506", collider.place, kCollisionCaret,
                    "rods pass through " + name +
-                       ", which flies freely: they touch what stands still or is held");
+                       ", which flies freely: they touch what stands still or is held, and what "
+                       "flies and may touch nothing but rods");
       return;
     }
     obstacles_ = true;
@@ -100,7 +81,7 @@ class ContactCheck {
   }
 
   Reading& r_;
-  std::vector<bool> fixed_, held_;
+  std::vector<char> flying_, among_rods_;
   bool obstacles_ = false;
 };
 

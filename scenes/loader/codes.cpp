@@ -63,7 +63,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"W503", "an effect has nothing to act on"},
       {"W504", "a time step that does not fit the duration"},
       {"W505", "joint limits that nothing enforces in this version"},
-      {"W506", "rods pass through bodies in free flight in this version"},
+      {"W506", "rods pass through bodies in free flight that may touch other bodies, too"},
       {"W507", "a quaternion or direction was not of unit length and has been normalised"},
       {"W508", "a resolution that belongs to a method no rod uses"},
       {"W511", "data for an effect that is not listed"},
