@@ -31,7 +31,8 @@ GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const V
   row.value += P * f;
   row.by_n += projected_by_n(n, f);
   row.by_force = P / scale.force;
-  if (contact.grip == Grip::kSmooth) return row;
+  // nor does a contact rub that pulls, soon to be dropped: (5) might have no solution then
+  if (contact.grip == Grip::kSmooth || !(n.dot(f) > 0)) return row;
   // tau / |tau| with tau = P w
   const Vec3 w = f - contact.kappa * rate, tau = P * w;
   const double size = tau.norm();
