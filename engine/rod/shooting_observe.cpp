@@ -326,7 +326,7 @@ RodEnergy ShootingRod::energy() const {
     e.damping_power += weight * v_t.dot(section_.B_se.cwiseProduct(v_t));
   }
   if (touch_ && touch_->friction && rates_.dynamic())
-    for (std::size_t i = 0; i < touch_->rows.size(); ++i)
+    for (std::size_t i = 0; i < std::min(touch_->rows.size(), touch_->contacts.size()); ++i)
       e.damping_power -= touch_->contacts[i].force.dot(touch_->rows[i].slip);
   // Energy that enters per unit feed: the base section's traction works on the inflow, which brings
   // strain energy and weight along.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/robot/robot.h"
 #include "engine/run/simulation.h"
 
 namespace cprsim {
@@ -35,9 +36,7 @@ Scene thrown_ball() {
   rod.length = 0.3;
   rod.section.shape = SectionShape::kCircle;
   rod.section.size = {0.003, 0};
-  rod.material.density = 1200;
-  rod.material.youngs_modulus = 1e8;
-  rod.material.shear_modulus = 4e7;
+  rod.material = MaterialSpec{1200, 1e8, 4e7, {}};
   rod.surface.friction = 0.6;
   rod.base.joint = EndJoint::kFree;
   rod.tip.joint = EndJoint::kFree;
