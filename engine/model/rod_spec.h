@@ -46,6 +46,14 @@ struct DampingSpec {
   Place place;
 };
 
+/// Of the fluid around a rod, at rest or in a steady current.
+struct DragSpec {
+  double normal = 0, tangential = 0;  ///< force per length and squared speed, kg/m²
+  double fluid_density = 0;           ///< kg/m³; 0: neither buoyancy nor added mass
+  double added_mass = 0;  ///< fluid that follows a motion across the rod, over the fluid displaced
+  Place place;
+};
+
 enum class EndJoint { kFree, kFixed, kRevolute, kBall, kUniversal };
 
 /// How a rod's end is held. The rod's end frame coincides with `at` when the joint's freedoms are
@@ -70,6 +78,7 @@ struct RodSpec {
   /// Bending about x and y, twist: of the unloaded rod, section axes, 1/m.
   Vec3 rest_curvature = Vec3::Zero();
   std::optional<DampingSpec> damping;
+  std::optional<DragSpec> drag;
   bool gravity = true;
   SurfaceSpec surface;
   std::vector<std::string> without;  ///< effects switched off for this rod

@@ -149,6 +149,7 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.shear = has(Effect::kShear);
   plan.rotary_inertia = has(Effect::kRotaryInertia);
   plan.damping = has(Effect::kDamping) && rod.spec->damping.has_value();
+  plan.drag = rod.section.fluid.resists();
   for (const LoadSpec* load : rod.loads)
     plan.stations.push_back(load->rod_s);
   plan.solver = &scene.solver;
@@ -162,6 +163,8 @@ void add_rods(Robot& robot) {
     RobotRod rod;
     rod.spec = &spec;
     rod.section = section_properties(spec);
+    if (scene.effects.has(Effect::kDrag) && spec.drag && !spec.lacks("drag"))
+      rod.section.fluid = fluid_properties(*spec.drag, rod.section.area);
     rod.base_held = spec.base.joint != EndJoint::kFree;
     rod.tip_held = spec.tip.joint != EndJoint::kFree;
     rod.base = attach(robot, spec.base.at);

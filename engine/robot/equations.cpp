@@ -46,6 +46,7 @@ void Equations::prepare_rods() {
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(t_, before_).value;
     forcing.length = rod.length;
     forcing.gravity = rod.gravity ? Vec3(acting() * robot_.gravity) : Vec3(Vec3::Zero());
+    forcing.wind = acting() * robot_.scene->wind;
     forcing.loads.clear();
     for (const LoadSpec* load : rod.loads)
       forcing.loads.push_back(scaled_load(*load));

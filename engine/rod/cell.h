@@ -17,6 +17,7 @@
 #pragma once
 
 #include "engine/rod/tableau.h"
+#include "engine/section/fluid_section.h"
 
 namespace cprsim {
 
@@ -24,8 +25,18 @@ namespace cprsim {
 enum class CellLaw {
   kKirchhoff,         ///< v = v0: no shear, no extension
   kExtensibleStatic,  ///< (6) explicit, valid while k = 0
-  kExtensible         ///< stage v lifted
+  kExtensible,        ///< stage v lifted
+  kKirchhoffFluid,    ///< v = v0 and a fluid's force in (3): engine/section/fluid.h
+  kExtensibleFluid    ///< stage v lifted, likewise
 };
+
+constexpr bool lifts_stretch(CellLaw law) {
+  return law == CellLaw::kExtensible || law == CellLaw::kExtensibleFluid;
+}
+
+constexpr bool immersed(CellLaw law) {
+  return law == CellLaw::kKirchhoffFluid || law == CellLaw::kExtensibleFluid;
+}
 
 /// Pose and internal wrench at a section, world axes; R row-major.
 struct NodeState {
@@ -40,8 +51,9 @@ struct CellModel {
   double k = 0;  ///< N/m²
   bool rotary = false;
   double rhoJ[3] = {};      ///< section inertia, kg m
-  double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term
+  double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
+  FluidSection* fluid = nullptr;  ///< of the cell's stages, for the laws of a fluid
 };
 
 /// One stage: inputs of the balance, unknowns, and what the last evaluation found.

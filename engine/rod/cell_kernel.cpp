@@ -3,6 +3,7 @@
 // This file is compiled once per vector width (CPRSIM_KERNEL names the copy). Columns are
 // independent and contraction is off, so all copies give the same bits.
 #include "engine/rod/cell.h"
+#include "engine/section/fluid.h"
 #include "engine/section/rotary.h"
 #include "engine/section/small_vector.h"
 
@@ -11,6 +12,10 @@ namespace {
 
 constexpr int round_up(int n) {
   return (n + 7) / 8 * 8;
+}
+
+inline V3 third_column(const double* R) {
+  return {R[2], R[5], R[8]};
 }
 
 // Nonlinear evaluation: (1)-(4) explicitly in the order the law allows, then the residuals (5),
@@ -46,7 +51,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
         n = n + (h * T.a[j][k]) * load(st[k].b);
       store(st[j].v, load(st[j].v0) + scaled(M.C_se, transposed_times(load_matrix(st[j].R), n)));
     }
-  } else if constexpr (law == CellLaw::kKirchhoff) {
+  } else if constexpr (law == CellLaw::kKirchhoff || law == CellLaw::kKirchhoffFluid) {
     for (int j = 0; j < S; ++j)
       store(st[j].v, load(st[j].v0));
   }
@@ -63,6 +68,10 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       p = p + (h * T.a[j][k]) * tau[k];
     store(st[j].p, p);
     n_s[j] = M.k * p + load(st[j].b);
+    if constexpr (immersed(law)) {
+      evaluate_fluid(M.c_v, M.c_w, p, third_column(st[j].R), M.fluid[j]);
+      n_s[j] = n_s[j] + load(M.fluid[j].force);
+    }
   }
   // (4)
   for (int j = 0; j < S; ++j) {
@@ -85,7 +94,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
     const M3 R = load_matrix(st[j].R);
     store(st[j].residual_u,
           load(st[j].u) - load(st[j].u0) - scaled(M.C_bt, transposed_times(R, m)));
-    if constexpr (law == CellLaw::kExtensible)
+    if constexpr (lifts_stretch(law))
       store(st[j].residual_v,
             load(st[j].v) - load(st[j].v0) - scaled(M.C_se, transposed_times(R, load(st[j].n))));
   }
@@ -191,11 +200,12 @@ bool eliminate(double (*A)[W]) {
 // All sensitivities of one cell, columns: lifted unknowns first, then the columns of Y.
 template <int S, CellLaw law, int NC>
 struct Linearization {
-  static constexpr int kLifted = law == CellLaw::kExtensible ? 6 * S : 3 * S;
+  static constexpr int kLifted = lifts_stretch(law) ? 6 * S : 3 * S;
   static constexpr int W = round_up(kLifted + NC);
   Rows<W> phi0, p0, n0, m0, phi[S], tau[S], p[S], n[S], m_s[S];
   M3 turn[S];  // R_j J_r(Omega_j)
   M3 J_r[S];
+  Rows<W> fluid[immersed(law) ? S : 1];
   alignas(64) double law_rows[kLifted][W];
 
   void take_columns(const double* Y) {
@@ -226,7 +236,7 @@ struct Linearization {
       set_zero(tau[j]);
       const M3 R = load_matrix(st[j].R);
       add_cross(tau[j], -1.0 * load(st[j].tau), phi[j]);
-      if constexpr (law == CellLaw::kExtensible) add_block(tau[j], 3 * S + 3 * j, 1.0, R);
+      if constexpr (lifts_stretch(law)) add_block(tau[j], 3 * S + 3 * j, 1.0, R);
       if constexpr (law == CellLaw::kExtensibleStatic) {
         // dv = C R^T (dn - phi × n), dn that of the start
         Rows<W> moved = n0;
@@ -242,11 +252,20 @@ struct Linearization {
       for (int k = 0; k < S; ++k)
         if (M.table->a[j][k] != 0) add_scaled(p[j], M.h * M.table->a[j][k], tau[k]);
     }
+    if constexpr (immersed(law))
+      for (int j = 0; j < S; ++j) {
+        set_zero(fluid[j]);
+        add_product(fluid[j], 1.0, load_matrix(M.fluid[j].force_p), p[j]);
+        add_product(fluid[j], 1.0, load_matrix(M.fluid[j].force_phi), phi[j]);
+      }
     for (int j = 0; j < S; ++j) {
       n[j] = n0;
       if (M.k != 0)
         for (int k = 0; k < S; ++k)
           if (M.table->a[j][k] != 0) add_scaled(n[j], M.h * M.table->a[j][k] * M.k, p[k]);
+      if constexpr (immersed(law))
+        for (int k = 0; k < S; ++k)
+          if (M.table->a[j][k] != 0) add_scaled(n[j], M.h * M.table->a[j][k], fluid[k]);
       set_zero(m_s[j]);
       add_cross(m_s[j], load(st[j].n), tau[j]);
       add_cross(m_s[j], -1.0 * load(st[j].tau), n[j]);
@@ -273,7 +292,7 @@ struct Linearization {
       add_product(rows, -1.0, compliance_of_axes(R, M.C_bt), moved);
       put_rows(rows, 3 * j, st[j].residual_u);
       // (6)
-      if constexpr (law == CellLaw::kExtensible) {
+      if constexpr (lifts_stretch(law)) {
         set_zero(rows);
         add_block(rows, 3 * S + 3 * j, 1.0, identity());
         moved = n[j];
@@ -308,6 +327,7 @@ struct Linearization {
       add_block(phi0, 3 * j, hb, turn_end);
       add_scaled(p0, hb, tau[j]);
       if (M.k != 0) add_scaled(n0, hb * M.k, p[j]);
+      if constexpr (immersed(law)) add_scaled(n0, hb, fluid[j]);
       add_scaled(m0, hb, m_s[j]);
     }
     const Rows<W>* const source[4] = {&phi0, &p0, &n0, &m0};
@@ -343,7 +363,7 @@ bool linearize(const CellModel& M, const CellStage* st, const NodeState&, const 
 
 template <int S, CellLaw law>
 constexpr CellKernel make_kernel() {
-  return {law == CellLaw::kExtensible ? 6 * S : 3 * S, evaluate<S, law>, linearize<S, law, kNarrow>,
+  return {lifts_stretch(law) ? 6 * S : 3 * S, evaluate<S, law>, linearize<S, law, kNarrow>,
           linearize<S, law, kWide>};
 }
 
@@ -361,6 +381,10 @@ const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kKirchhoff>[stages - 1];
     case CellLaw::kExtensibleStatic:
       return kKernels<CellLaw::kExtensibleStatic>[stages - 1];
+    case CellLaw::kKirchhoffFluid:
+      return kKernels<CellLaw::kKirchhoffFluid>[stages - 1];
+    case CellLaw::kExtensibleFluid:
+      return kKernels<CellLaw::kExtensibleFluid>[stages - 1];
     case CellLaw::kExtensible:
       break;
   }

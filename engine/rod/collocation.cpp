@@ -29,6 +29,7 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   extensible_ = options.extension || options.shear;
   choose_space(plane, X_WBase.R);
   place_sites(arc_grid(options.elements, options.stations));
+  if (options.drag) fluid_ = Immersion(points_.size());
   const auto n = static_cast<Eigen::Index>(points_.size());
   const Eigen::Index strains = options.damping ? n * (extensible_ ? 2 : 1) : 0;
   track_.resize(position_coordinates() + 3 * strains);
@@ -194,6 +195,7 @@ void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing)
   model_.c_v = rates.c_v;
   model_.c_w = rates.c_w;
   model_.body_rates = rates.body_rates;
+  fluid_.prepare(section_.fluid, rates, forcing_, track_);
   choose_units();
   update_point_inputs();
 }
@@ -209,13 +211,14 @@ void CollocationRod::choose_units() {
   // positions carry round-off eps L, which inertia turns into forces eps k L²; control points of
   // forces carry eps N, and slopes of splines are up to degree / h
   constexpr double kEps = std::numeric_limits<double>::epsilon();
-  const double by_inertia = 50 * kEps * model_.k * L * L,
+  const double k = model_.k + fluid_.stiffness();
+  const double by_inertia = 50 * kEps * k * L * L,
                by_slopes = 4 * kEps * N * options_.degree * std::sqrt(elements_);
   noise_ = std::max(1.0, std::max(by_inertia, by_slopes) / (scale_.force * forcing_.tolerance));
   Vec3 K_se = Vec3::Zero();
   for (int i = 0; i < 3; ++i)
     if (model_.C_se[i] > 0) K_se[i] = 1 / model_.C_se[i];
-  growth_ = cprsim::growth_exponent(section_, model_.C_bt.cwiseInverse(), K_se, L, model_.k, N);
+  growth_ = cprsim::growth_exponent(section_, model_.C_bt.cwiseInverse(), K_se, L, k, N);
   const double layer = L / std::max(1.0, growth_);
   unit_ = {layer, EI / (layer * layer), EI / layer};
 }
@@ -227,7 +230,7 @@ void CollocationRod::update_point_inputs() {
   for (std::size_t j = 0; j < points_.size(); ++j) {
     CollocationPoint& point = points_[j];
     const auto i = 3 * static_cast<Eigen::Index>(j), strain = strain_track() + i;
-    point.b = -section_.rhoA * forcing_.gravity;
+    point.b = -section_.weighing_mass() * forcing_.gravity;
     point.u0 = model_.C_bt.cwiseProduct(K_rest);
     point.v0 = z;
     if (forcing_.relaxation > 0) point.b -= forcing_.relaxation * marked_[j];
@@ -305,7 +308,7 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
       points_[j].y = value(sites_[j]);
       points_[j].y_s = derivative(sites_[j]);
-      residual_.push_back(evaluate_point(model_, points_[j]));
+      residual_.push_back(evaluate_point(model_, points_[j], fluid_at(j)));
       add(VecX(rows_ * point_scale(j).cwiseProduct(residual_.back())));
     }
   }

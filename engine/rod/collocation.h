@@ -31,6 +31,7 @@
 #include "engine/math/bspline.h"
 #include "engine/rod/collocation_point.h"
 #include "engine/rod/end_wrench.h"
+#include "engine/rod/immersion.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/section.h"
 
@@ -41,7 +42,7 @@ constexpr int kLeastDegree = 2, kDefaultDegree = 7;
 struct CollocationOptions {
   int degree = kDefaultDegree, elements = 4;  ///< elements: at least; all point loads are at knots
   bool extension = false, shear = false;      ///< effects that change the law
-  bool rotary_inertia = false, damping = false;
+  bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;  ///< s of point loads
 };
 
@@ -145,6 +146,9 @@ class CollocationRod final : public RodModel {
   MatX base_columns(const NodeState& start) const;
   Vec13 left_by_plane(const Vec13& by_fields, const Vec4& q) const;
 
+  /// Of a point, null where no fluid acts.
+  FluidSection* fluid_at(std::size_t point) { return fluid_.acts() ? fluid_.at(point) : nullptr; }
+
   Eigen::Index strain_track() const { return position_coordinates(); }
 
   /// Unknowns of a control point, and rows of a point.
@@ -177,6 +181,7 @@ class CollocationRod final : public RodModel {
   PointModel model_;
   StageRates rates_;
   RodForcing forcing_;
+  Immersion fluid_{0};
   RodScale scale_;    ///< L, EI/L², EI/L
   RodScale unit_;     ///< the same with the boundary layer's length, for pivoting
   double noise_ = 1;  ///< rows of forces grow by this where round-off exceeds the tolerance

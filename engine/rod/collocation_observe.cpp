@@ -57,6 +57,7 @@ void CollocationRod::visit(Archive& archive) {
   archive(growth_);
   archive.doubles(control_);
   archive.doubles(points_);
+  fluid_.visit(archive);
   for (Track* track : tracks())
     track->visit(archive);
   archive.doubles(reference_rotations_);
@@ -130,7 +131,8 @@ RodEnergy CollocationRod::energy() const {
       e.kinetic += weight * 0.5 * omega.dot(section_.rhoJ.cwiseProduct(omega));
     }
     e.elastic += weight * elastic(point.u, point.v);
-    e.gravity -= weight * section_.rhoA * forcing_.gravity.dot(point.p());
+    e.gravity -= weight * section_.weighing_mass() * forcing_.gravity.dot(point.p());
+    if (options_.drag) fluid_.add_power(j, point.R.col(2), weight, track_, e);
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strain);
     e.damping_power += weight * u_t.dot(section_.B_bt.cwiseProduct(u_t));
@@ -143,7 +145,7 @@ RodEnergy CollocationRod::energy() const {
   const CollocationPoint& base = points_.front();
   e.feed_power = elastic(base.u, base.v) - (base.R.transpose() * base.n()).dot(base.v) -
                  (base.R.transpose() * base.m()).dot(base.u) -
-                 section_.rhoA * forcing_.gravity.dot(base.p());
+                 section_.weighing_mass() * forcing_.gravity.dot(base.p());
   return e;
 }
 

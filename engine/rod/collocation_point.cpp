@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/math/so3.h"
+#include "engine/section/fluid.h"
 #include "engine/section/rotary.h"
 
 namespace cprsim {
@@ -69,7 +70,7 @@ Eigen::Matrix4d quaternion_by_increment(const Vec4& q) {
   return M;
 }
 
-Vec13 evaluate_point(const PointModel& model, CollocationPoint& point) {
+Vec13 evaluate_point(const PointModel& model, CollocationPoint& point, FluidSection* fluid) {
   const Vec4 q = point.y.head<4>(), q_s = point.y_s.head<4>();
   const Vec3 p_s = point.y_s.segment<3>(kP);
   point.R = rotation_of(q);
@@ -81,7 +82,12 @@ Vec13 evaluate_point(const PointModel& model, CollocationPoint& point) {
       point.u - point.u0 - model.C_bt.cwiseProduct(point.R.transpose() * point.m());  // (2)
   r.segment<3>(kP) = p_s - point.R * point.v;                                         // (3)
   r.segment<3>(kN) = point.y_s.segment<3>(kN) - model.k * point.p() - point.b;        // (4)
-  r.segment<3>(kM) = point.y_s.segment<3>(kM) + p_s.cross(point.n());                 // (5)
+  if (fluid) {
+    evaluate_fluid(model.c_v, model.c_w, load(point.y.data() + kP), load(point.R.col(2).data()),
+                   *fluid);
+    r.segment<3>(kN) -= Eigen::Map<const Vec3>(fluid->force);
+  }
+  r.segment<3>(kM) = point.y_s.segment<3>(kM) + p_s.cross(point.n());  // (5)
   if (model.rotary) {
     Eigen::Map<RowMatrix>(point.spin.R) = point.R;
     evaluate_rotary(model, point.spin);
@@ -91,7 +97,7 @@ Vec13 evaluate_point(const PointModel& model, CollocationPoint& point) {
 }
 
 void linearize_point(const PointModel& model, const CollocationPoint& point, Mat13& by_y,
-                     Mat13& by_y_s) {
+                     Mat13& by_y_s, const FluidSection* fluid) {
   by_y.setZero();
   by_y_s.setZero();
   const Vec4 q = point.y.head<4>(), q_s = point.y_s.head<4>();
@@ -118,6 +124,10 @@ void linearize_point(const PointModel& model, const CollocationPoint& point, Mat
   // (4)
   by_y.block<3, 3>(kN, kP).diagonal().setConstant(-model.k);
   by_y_s.block<3, 3>(kN, kN).setIdentity();
+  if (fluid) {
+    by_y.block<3, 3>(kN, kP) -= Eigen::Map<const RowMatrix>(fluid->force_p);
+    by_y.block<3, 4>(kN, kQ) -= Eigen::Map<const RowMatrix>(fluid->force_phi) * G;
+  }
   // (5)
   by_y.block<3, 3>(kM, kN) = cprsim::hat(p_s);
   by_y_s.block<3, 3>(kM, kP) = -cprsim::hat(n);

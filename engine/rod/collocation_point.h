@@ -5,15 +5,17 @@
 //   q · q_s = 0                                  (1)   |q| stays what it is at the base
 //   2 vec(q* q_s) / |q|² = u = u0 + C_bt R^T m   (2)   curvature law
 //   p_s = R v,  v = v0 + C_se R^T n              (3)   shear and stretch law
-//   n_s = k p + b                                (4)
+//   n_s = k p + b + g                            (4)
 //   m_s = -p_s × n + t(R)                        (5)
-// No row divides by a stiffness; a rigid mode is a zero of C_bt, C_se. Everything but (1) is
-// unchanged by q -> a q, and a constant left factor of q turns the frame: rows (2)-(5) turn with
-// it. Source: Weeger, Yeung, Dunn, CMAME 316 (2017) 100-122, whose mixed rows these are; that (2),
-// (3) are as many as (4), (5) is explained in engine/rod/collocation.h.
+// where g is a fluid's force (engine/section/fluid.h). No row divides by a stiffness; a rigid mode
+// is a zero of C_bt, C_se. Everything but (1) is unchanged by q -> a q, and a constant left factor
+// of q turns the frame: rows (2)-(5) turn with it. Source: Weeger, Yeung, Dunn, CMAME 316 (2017)
+// 100-122, whose mixed rows these are; that (2), (3) are as many as (4), (5) is explained in
+// engine/rod/collocation.h.
 #pragma once
 
 #include "engine/math/types.h"
+#include "engine/section/fluid_section.h"
 
 namespace cprsim {
 
@@ -30,7 +32,7 @@ struct PointModel {
   double k = 0;  ///< N/m²
   bool rotary = false;
   double rhoJ[3] = {};      ///< section inertia, kg m
-  double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term
+  double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;
 };
 
@@ -75,10 +77,11 @@ Eigen::Matrix<double, 3, 4> turn_by_quaternion(const Vec4& q);
 Eigen::Matrix4d quaternion_by_increment(const Vec4& q);
 
 /// Reads y, y_s and the inputs, fills the rest. @return left minus right sides of (1) to (5).
-Vec13 evaluate_point(const PointModel& model, CollocationPoint& point);
+Vec13 evaluate_point(const PointModel& model, CollocationPoint& point,
+                     FluidSection* fluid = nullptr);
 
 /// Derivatives of these rows by y and y_s, after evaluate_point().
 void linearize_point(const PointModel& model, const CollocationPoint& point, Mat13& by_y,
-                     Mat13& by_y_s);
+                     Mat13& by_y_s, const FluidSection* fluid = nullptr);
 
 }  // namespace cprsim

@@ -9,6 +9,7 @@ void describe_section(RodField& field, const SectionProperties& section, bool sh
   if (shear) field.K_se.head<2>() = section.K_se.head<2>();
   if (extension) field.K_se.z() = section.K_se.z();
   field.rhoA = section.rhoA;
+  field.added_mass = section.fluid.added_mass;
   field.rhoJ = section.rhoJ;
 }
 

@@ -27,6 +27,7 @@ struct RodField {
   Vec3 K_bt = Vec3::Zero();        ///< bending, bending, torsion, N m²
   Vec3 K_se = Vec3::Zero();        ///< shear, shear, extension, N; 0 where the strain is not free
   double rhoA = 0;
+  double added_mass = 0;     ///< of a fluid, across the tangent, kg/m
   Vec3 rhoJ = Vec3::Zero();  ///< whether or not the scene lists rotary inertia
 };
 

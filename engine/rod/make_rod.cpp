@@ -21,6 +21,7 @@ ShootingOptions shooting_options(const RodPlan& plan) {
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
+  o.drag = plan.drag;
   o.stations = plan.stations;
   return o;
 }
@@ -68,6 +69,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
+  o.drag = plan.drag;
   o.stations = plan.stations;
   if (!plan.plane)
     return std::make_unique<StrainRod>(spec.name, EndCondition(spec.base), EndCondition(spec.tip),
@@ -87,6 +89,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
+  o.drag = plan.drag;
   o.stations = plan.stations;
   if (!plan.plane)
     return std::make_unique<CollocationRod>(spec.name, EndCondition(spec.base),

@@ -23,7 +23,7 @@ struct RodPlan {
   SectionProperties section;
   double length = 0;
   bool extension = false, shear = false;  ///< effects that change the law
-  bool rotary_inertia = false, damping = false;
+  bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;        ///< s / L of point loads
   const SolverSpec* solver = nullptr;  ///< resolution, accuracy
 };

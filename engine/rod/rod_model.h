@@ -51,6 +51,7 @@ struct PointLoad {
 struct RodForcing {
   double length = 0;
   Vec3 gravity = Vec3::Zero();   ///< m/s²
+  Vec3 wind = Vec3::Zero();      ///< m/s; read by a rod that has drag
   std::vector<PointLoad> loads;  ///< in the order and at the s given at construction
   double relaxation = 0;  ///< N s/m² over the pseudo time step: drag towards the marked positions
   double axial_softness =
@@ -67,7 +68,8 @@ struct RodResidual {
 
 struct RodEnergy {
   double kinetic = 0, elastic = 0, gravity = 0;
-  double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping
+  double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping, drag and friction
+  double fluid_power = 0;    ///< W, brought in by a fluid's current and its inertia
   double feed_power =
       0;  ///< W, brought in per unit feed rate of the length drive (N): see shooting.cpp
 };

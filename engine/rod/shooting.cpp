@@ -33,7 +33,8 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
       section_(section),
       options_(options),
       table_(&arc_tableau(options.integrator)),
-      grid_(arc_grid(options.cells, options.stations)) {
+      grid_(arc_grid(options.cells, options.stations)),
+      fluid_(options.drag ? (grid_.size() - 1) * static_cast<std::size_t>(table_->stages) : 0) {
   cells_ = static_cast<int>(grid_.size()) - 1;
   extensible_ = options.extension || options.shear;
   const auto n = static_cast<std::size_t>(cells_ * table_->stages);
@@ -110,17 +111,20 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   model_.c_v = rates.c_v;
   model_.c_w = rates.c_w;
   model_.body_rates = rates.body_rates;
+  fluid_.prepare(section_.fluid, rates, forcing_, track_);
   const bool stretches = extensible_ || forcing.axial_softness > 0;
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
                          : CellLaw::kExtensible;
+  if (fluid_.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
   kernel_ = &cell_kernel(table_->stages, law_);
 
   const double EI = std::max(section_.K_bt.x(), section_.K_bt.y());
   scale_ = {L, EI / (L * L), EI / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  noise_ = std::max(1.0, kRoundOff * model_.k * std::pow(L, 4) / (EI * forcing_.tolerance));
+  const double k = model_.k + fluid_.stiffness();
+  noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (EI * forcing_.tolerance));
   update_stage_inputs();
   choose_segments();
 }
@@ -135,7 +139,7 @@ void ShootingRod::update_stage_inputs() {
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     CellStage& stage = stages_[j];
     const auto i = 3 * static_cast<Eigen::Index>(j);
-    Vec3 b = -section_.rhoA * forcing_.gravity;
+    Vec3 b = -section_.weighing_mass() * forcing_.gravity;
     Vec3 u0 = C_bt.cwiseProduct(K_rest), v0(0, 0, 1);
     if (rates_.dynamic()) {
       b += section_.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
@@ -171,7 +175,8 @@ void ShootingRod::choose_segments() {
   if (evaluated_)
     for (const NodeState& node : nodes_)
       N = std::max(N, force_of(node).norm());
-  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k, N);
+  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length,
+                                    model_.k + fluid_.stiffness(), N);
   const double layer = forcing_.length / std::max(1.0, growth_);
   const double EI = scale_.moment * scale_.length;
   port_scale_ = {layer, EI / (layer * layer), EI / layer};
@@ -238,6 +243,7 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
     }
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
       model_.h = cell_length(c);
+      if (fluid_.acts()) model_.fluid = fluid_.at(c * S);
       NodeState end;
       if (touch_) open_contacts(c, state);
       kernel_->evaluate(model_, &stages_[c * S], state, end);
@@ -250,7 +256,7 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
   for (const CellStage& stage : stages_) {
     for (double u : stage.residual_u)
       add_row(r, u * scale_.length / noise_, row++);
-    if (law_ == CellLaw::kExtensible)
+    if (lifts_stretch(law_))
       for (double v : stage.residual_v)
         add_row(r, v / noise_, row++);
   }
@@ -266,9 +272,9 @@ std::string ShootingRod::row_name(int row) const {
   const int joins = 12 * (segments() - 1);
   if (row < joins) return "join " + std::to_string(row / 12 + 1) + " between segments of " + name_;
   row -= joins;
-  const int law = static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 6 : 3);
+  const int law = static_cast<int>(stages_.size()) * (lifts_stretch(law_) ? 6 : 3);
   if (row < law) {
-    const int stage = row / (law_ == CellLaw::kExtensible ? 6 : 3);
+    const int stage = row / (lifts_stretch(law_) ? 6 : 3);
     const int cell = stage / table_->stages;
     return "strain law of " + name_ + " in cell " + std::to_string(cell + 1) + " of " +
            std::to_string(cells_);
@@ -280,7 +286,7 @@ std::string ShootingRod::row_name(int row) const {
 
 int ShootingRod::unknown_count() const {
   return 12 * segments() + 3 * static_cast<int>(contact_count()) +
-         static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 6 : 3);
+         static_cast<int>(stages_.size()) * (lifts_stretch(law_) ? 6 : 3);
 }
 
 }  // namespace cprsim

@@ -24,6 +24,7 @@
 #include <memory>
 
 #include "engine/rod/contact.h"
+#include "engine/rod/immersion.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/section.h"
 
@@ -33,7 +34,7 @@ struct ShootingOptions {
   ArcIntegrator integrator = ArcIntegrator::kGauss4;
   int cells = 10;
   bool extension = false, shear = false;  ///< effects that change the law
-  bool rotary_inertia = false, damping = false;
+  bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;  ///< s of point loads: grid nodes are placed there
 };
 
@@ -202,6 +203,7 @@ class ShootingRod final : public RodModel, public TouchingRod {
   CellModel model_;
   StageRates rates_;
   RodForcing forcing_;
+  Immersion fluid_;
   RodScale scale_;       ///< L, EI/L², EI/L
   RodScale port_scale_;  ///< the same with the boundary layer's length, for orthonormalisation
   double noise_ = 1;     ///< row scales grow by this where round-off exceeds the tolerance

@@ -166,6 +166,7 @@ bool ShootingRod::sweep_columns(const Port& base) {
     if (g == 0 && open) close_open_forces(0, 0, Y);
     for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
       model_.h = cell_length(c);
+      if (fluid_.acts()) model_.fluid = fluid_.at(c * S);
       if (contact_in(c)) open_contact_columns(c, Y);
       if (open) enter_open_forces(c, g, Y);
       if (!linearize(model_, &stages_[c * S], cell_state(c), nodes_[c + 1], Y,
@@ -365,7 +366,7 @@ void ShootingRod::move(double alpha) {
     const double* d = &lifted_direction_[j / S * lifted + 3 * (j % S)];
     for (std::size_t i = 0; i < 3; ++i)
       stages_[j].w[i] = kept_lifted_[6 * j + i] + alpha * d[i];
-    if (law_ == CellLaw::kExtensible)
+    if (lifts_stretch(law_))
       for (std::size_t i = 0; i < 3; ++i)
         stages_[j].v[i] = kept_lifted_[6 * j + 3 + i] + alpha * d[3 * S + i];
   }

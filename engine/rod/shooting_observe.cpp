@@ -156,7 +156,7 @@ void ShootingRod::start_tracks_moving() {
       const Mat3 R = Eigen::Map<const RowMatrix>(stage[j].R), J_r = right_jacobian(Omega);
       du[j] = J_r * dw + right_jacobian_derivative(Omega, w) * dOmega;
       const Vec3 phi_j = phi + R * (J_r * dOmega);
-      if (law_ == CellLaw::kExtensible) dv[j] = vec(d + 3 * S + 3 * j);
+      if (lifts_stretch(law_)) dv[j] = vec(d + 3 * S + 3 * j);
       if (law_ == CellLaw::kExtensibleStatic)
         dv[j] = vec(model_.C_se).cwiseProduct(R.transpose() * (dn + vec(stage[j].n).cross(phi_j)));
       dtau[j] = phi_j.cross(vec(stage[j].tau)) + R * dv[j];
@@ -254,6 +254,7 @@ void ShootingRod::visit(Archive& archive) {
   archive.resized_doubles(starts_, static_cast<std::size_t>(cells_));
   segment_first_ = segment_starts(static_cast<int>(starts_.size()), cells_);
   archive.doubles(nodes_);
+  fluid_.visit(archive);
   for (Track* track : tracks())
     track->visit(archive);
   archive.doubles(reference_rotations_);
@@ -317,7 +318,9 @@ RodEnergy ShootingRod::energy() const {
     e.elastic +=
         weight * 0.5 *
         (bent.dot(section_.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
-    e.gravity -= weight * section_.rhoA * forcing_.gravity.dot(vec(stage.p));
+    e.gravity -= weight * section_.weighing_mass() * forcing_.gravity.dot(vec(stage.p));
+    if (options_.drag)
+      fluid_.add_power(j, Eigen::Map<const RowMatrix>(stage.R).col(2), weight, track_, e);
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strains + i);
     e.damping_power += weight * u_t.dot(section_.B_bt.cwiseProduct(u_t));
@@ -338,8 +341,8 @@ RodEnergy ShootingRod::energy() const {
   const Vec3 bent = u - section_.u_rest;
   const double density =
       0.5 * (bent.dot(section_.K_bt.cwiseProduct(bent)) + (v - z).dot(K_se.cwiseProduct(v - z)));
-  e.feed_power =
-      density - n_S.dot(v) - m_S.dot(u) - section_.rhoA * forcing_.gravity.dot(position_of(base));
+  e.feed_power = density - n_S.dot(v) - m_S.dot(u) -
+                 section_.weighing_mass() * forcing_.gravity.dot(position_of(base));
   return e;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/rod/arc_grid.h"
 #include "engine/rod/magnus.h"
 #include "engine/rod/shooting.h"
+#include "engine/section/fluid.h"
 #include "engine/section/rotary.h"
 
 namespace cprsim {
@@ -34,7 +35,8 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
       section_(section),
       options_(options),
       rule_(options.order, options.order + kExtraPoints),
-      grid_(arc_grid(options.elements, options.stations)) {
+      grid_(arc_grid(options.elements, options.stations)),
+      fluid_(options.drag ? (grid_.size() - 1) * static_cast<std::size_t>(rule_.points()) : 0) {
   list_modes(X_WBase.R);
   load_at_ = nodes_at(grid_, options_.stations);
   const auto functions = rule_.functions();
@@ -121,11 +123,13 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   assert(forcing_.loads.size() == load_at_.size());
   k_ = section_.rhoA * rates.c_v * rates.c_w + forcing.relaxation;
   turning_ = options_.rotary_inertia && rates.dynamic();
+  fluid_.prepare(section_.fluid, rates, forcing, track_);
   const double L = forcing.length, EI = section_.K_bt.head<2>().maxCoeff();
   scale_ = {L, EI / (L * L), EI / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  noise_ = std::max(1.0, kRoundOff * k_ * std::pow(L, 4) / (EI * forcing.tolerance));
+  const double k = k_ + fluid_.stiffness();
+  noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (EI * forcing.tolerance));
   free_modes_.clear();
   for (std::size_t a = 0; a < modes_.size(); ++a) {
     if (compliance(modes_[a]) > 0)
@@ -138,7 +142,7 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   double N = 0;
   for (const StrainPoint& point : points_)
     N = std::max(N, point.n.norm());
-  growth_ = cprsim::growth_exponent(section_, section_.K_bt, Vec3::Zero(), L, k_, N);
+  growth_ = cprsim::growth_exponent(section_, section_.K_bt, Vec3::Zero(), L, k, N);
 }
 
 // (4) with xi_t = c_v q + q_h, divided by K + c_v B: q + C B q_h - C ∫ Phi^T Lambda = 0.
@@ -146,7 +150,7 @@ void StrainRod::update_point_inputs() {
   const auto n = static_cast<Eigen::Index>(points_.size());
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    b_[i] = -section_.rhoA * forcing_.gravity;
+    b_[i] = -section_.weighing_mass() * forcing_.gravity;
     if (forcing_.relaxation > 0) b_[i] -= forcing_.relaxation * marked_[i];
     if (!rates_.dynamic()) continue;
     b_[i] +=
@@ -217,6 +221,13 @@ void StrainRod::evaluate_rotary_inertia(std::size_t point) {
   evaluate_rotary(model, rotary_[point]);
 }
 
+Vec3 StrainRod::fluid_force(std::size_t point) {
+  const StrainPoint& at = points_[point];
+  evaluate_fluid(rates_.c_v, rates_.c_w, load(at.p.data()), load(at.R.col(2).data()),
+                 *fluid_.at(point));
+  return Eigen::Map<const Vec3>(fluid_.at(point)->force);
+}
+
 // (4)
 void StrainRod::project_law(std::size_t e) {
   const Eigen::Index G = rule_.points();
@@ -260,7 +271,9 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
   for (Eigen::Index i = 0; i < G; ++i) {
     const auto k = static_cast<std::size_t>(i);
     point[i].p = p0 + integral(i, [&](Eigen::Index j) { return point[j].tau; });
-    n_s[k] = k_ * point[i].p + b_[e * static_cast<std::size_t>(G) + k];
+    const std::size_t at = e * static_cast<std::size_t>(G) + k;
+    n_s[k] = k_ * point[i].p + b_[at];
+    if (fluid_.acts()) n_s[k] += fluid_force(at);
     n_end += h * w[i] * n_s[k];
   }
   for (Eigen::Index i = 0; i < G; ++i) {

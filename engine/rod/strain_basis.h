@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "engine/rod/end_condition.h"
+#include "engine/rod/immersion.h"
 #include "engine/rod/rod_model.h"
 #include "engine/rod/strain_rule.h"
 #include "engine/section/section.h"
@@ -35,7 +36,7 @@ struct StrainOptions {
   int order = 6;     ///< highest degree of the strain polynomials
   int elements = 1;  ///< at least; point loads cut further
   bool extension = false, shear = false;
-  bool rotary_inertia = false, damping = false;
+  bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;  ///< s / L of point loads
 };
 
@@ -156,6 +157,7 @@ class StrainRod final : public RodModel {
   void evaluate_element(std::size_t element, NodeState& state);
   void project_law(std::size_t element);
   void evaluate_rotary_inertia(std::size_t point);
+  Vec3 fluid_force(std::size_t point);
   void apply_load(std::size_t node, NodeState& state) const;
   void update_point_inputs();
   void add_row(RodResidual& r, double value, int row) const;
@@ -185,8 +187,9 @@ class StrainRod final : public RodModel {
   RodScale scale_;
   double noise_ = 1;  ///< row scales grow by this where round-off exceeds the tolerance
   double growth_ = 0;
-  double k_ = 0;           ///< N/m², of (3)
-  std::vector<Vec3> b_;    ///< N/m at the points
+  double k_ = 0;         ///< N/m², of (3)
+  std::vector<Vec3> b_;  ///< N/m at the points
+  Immersion fluid_;
   std::vector<MatX> q_0_;  ///< per element, modes × functions: what damping adds to q in (4)
 
   // unknowns and what the last evaluation found

@@ -93,10 +93,17 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
   }
   const std::vector<Rows3> p(point_moves_.begin() + static_cast<std::ptrdiff_t>(first),
                              point_moves_.begin() + static_cast<std::ptrdiff_t>(first) + G);
+  std::vector<Rows3> fluid;
+  for (std::size_t i = 0; fluid_.acts() && i < tau.size(); ++i) {
+    const FluidSection& at = *fluid_.at(first + i);
+    fluid.push_back(Eigen::Map<const RowMatrix>(at.force_p) * p[i] +
+                    Eigen::Map<const RowMatrix>(at.force_phi) * point_turns_[first + i]);
+  }
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const StrainPoint& point = points_[first + i];
     n[i] = y.middleRows<3>(6);
     if (k_ != 0) integral(i, p, k_, n[i]);
+    if (fluid_.acts()) integral(i, fluid, 1, n[i]);
     m_s[i] = hat(point.n) * tau[i] - hat(point.tau) * n[i];
     if (turning_)
       m_s[i] +=
@@ -112,6 +119,7 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
     const double hw = h * rule_.gauss.weights[static_cast<Eigen::Index>(i)];
     y.middleRows<3>(3) += hw * tau[i];
     if (k_ != 0) y.middleRows<3>(6) += (hw * k_) * p[i];
+    if (fluid_.acts()) y.middleRows<3>(6) += hw * fluid[i];
     y.middleRows<3>(9) += hw * m_s[i];
   }
 }

@@ -184,6 +184,7 @@ void StrainRod::visit(Archive& archive) {
   archive.doubles(nodes_);
   archive.doubles(turns_);
   archive.doubles(rotary_);
+  fluid_.visit(archive);
   for (Track* track : tracks())
     track->visit(archive);
 }
@@ -267,7 +268,8 @@ RodEnergy StrainRod::energy() const {
     const double weight = length_of(j / G) * rule_.gauss.weights[static_cast<Eigen::Index>(j % G)];
     energy.kinetic += weight * 0.5 * section_.rhoA *
                       track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)).squaredNorm();
-    energy.gravity -= weight * section_.rhoA * forcing_.gravity.dot(points_[j].p);
+    energy.gravity -= weight * section_.weighing_mass() * forcing_.gravity.dot(points_[j].p);
+    if (options_.drag) fluid_.add_power(j, points_[j].R.col(2), weight, track_, energy);
     if (rotary_.empty()) continue;
     const Vec3 omega = vec(rotary_[j].omega);
     energy.kinetic += weight * 0.5 * omega.dot(section_.rhoJ.cwiseProduct(omega));
@@ -293,7 +295,7 @@ RodEnergy StrainRod::energy() const {
   const Mat3 R = rotation_of(base);
   energy.feed_power = density - (R.transpose() * force_of(base)).dot(strain(0, phi, false)) -
                       (R.transpose() * moment_of(base)).dot(strain(0, phi, true)) -
-                      section_.rhoA * forcing_.gravity.dot(position_of(base));
+                      section_.weighing_mass() * forcing_.gravity.dot(position_of(base));
   return energy;
 }
 

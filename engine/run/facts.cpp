@@ -12,6 +12,19 @@ namespace {
 
 constexpr double kFirstRoot = 1.8751040687119611;  // of cos x cosh x = -1: clamped-free beam
 
+/// The largest of: force of the current and lost weight over the bending force, c_n U²L³/EI and
+/// rho_f A g L³/EI; in motion drag and added mass over inertia, c_n L/(rho A) and m_a/(rho A).
+double drag_number(const RodSpec& spec, const SectionProperties& s, const Scene& scene, double L) {
+  const FluidProperties fluid = fluid_properties(*spec.drag, s.area);
+  const double per_force = std::pow(L, 3) / std::min(s.K_bt.x(), s.K_bt.y());
+  double number = fluid.normal * scene.wind.squaredNorm() * per_force;
+  if (scene.effects.has(Effect::kGravity))
+    number = std::max(number, fluid.displaced_mass * scene.gravity.norm() * per_force);
+  if (scene.simulation.mode == Mode::kDynamic && s.rhoA > 0)
+    number = std::max({number, fluid.normal * L / s.rhoA, fluid.added_mass / s.rhoA});
+  return number;
+}
+
 RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan) {
   RodFacts f;
   const SectionProperties& s = rod.section;
@@ -43,6 +56,7 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   f.shear_number = s.K_se.x() > 0 ? EI / (s.K_se.x() * L * L) : 0;
   f.extension_number = s.K_se.z() > 0 ? EI / (s.K_se.z() * L * L) : 0;
   f.damping_ratio = omega * std::max(s.B_bt.x(), s.B_bt.y()) / (2 * EI);
+  if (rod.spec->drag) f.drag_number = drag_number(*rod.spec, s, scene, L);
   return f;
 }
 

@@ -32,9 +32,11 @@ void EnergyLedger::collect(double t, bool before) {
 
 double EnergyLedger::drive_power(double t, bool before) const {
   double power = 0;
-  for (const RobotRod& rod : robot_.rods)
+  for (const RobotRod& rod : robot_.rods) {
     if (rod.length_drive)
       power += rod.model->energy().feed_power * rod.length_drive->evaluate(t, before).rate;
+    if (rod.section.fluid.resists()) power += rod.model->energy().fluid_power;
+  }
   for (const JointDrive& drive : robot_.joint_drives) {
     const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
     const Joint::Freedom& freedom = joint.freedoms[static_cast<std::size_t>(drive.freedom)];

@@ -54,6 +54,7 @@ struct RodFacts {
   int elements = 0, order = 0;  ///< pieces, and the order of the rule
   int segments = 0, unknowns = 0;
   double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
+  double drag_number = 0;  ///< of a fluid that the scene describes, listed or not
 };
 
 struct ProblemFacts {

@@ -49,6 +49,11 @@ void section_geometry(const SectionSpec& section, double& area, Vec3& second_mom
   }
 }
 
+FluidProperties fluid_properties(const DragSpec& drag, double area) {
+  const double displaced = drag.fluid_density * area;
+  return {drag.normal, drag.tangential, drag.added_mass * displaced, displaced};
+}
+
 SectionProperties section_properties(const RodSpec& rod) {
   SectionProperties s;
   section_geometry(rod.section, s.area, s.second_moments);

@@ -17,6 +17,16 @@
 
 namespace cprsim {
 
+/// Of the fluid around a section, per length; all 0 unless the scene lists drag.
+struct FluidProperties {
+  double normal = 0, tangential = 0;  ///< of the drag, kg/m²
+  double added_mass = 0;              ///< across the axis, kg/m
+  double displaced_mass = 0;          ///< kg/m
+
+  /// Whether it does more than carry weight.
+  bool resists() const { return normal > 0 || tangential > 0 || added_mass > 0; }
+};
+
 struct SectionProperties {
   double area = 0;
   Vec3 second_moments = Vec3::Zero();  ///< about x, about y, torsion constant, m⁴
@@ -27,13 +37,20 @@ struct SectionProperties {
   double rhoA = 0;
   Vec3 rhoJ = Vec3::Zero();  ///< rho (I_x, I_y, I_x + I_y)
   double half_width = 0;     ///< largest distance from the centre, m
+  FluidProperties fluid;
+
+  /// What gravity pulls at: mass per length less that of the fluid displaced.
+  double weighing_mass() const { return rhoA - fluid.displaced_mass; }
 };
 
 /// Area, I_x, I_y and Saint-Venant torsion constant of a shape. Rectangle: the series of Timoshenko
 /// & Goodier, Theory of Elasticity, art. 109; ellipse: ibid. art. 105.
 void section_geometry(const SectionSpec& section, double& area, Vec3& second_moments);
 
-/// All properties; direct stiffnesses replace those of shape and material.
+/// The part of the fluid that the rod's <drag> describes.
+FluidProperties fluid_properties(const DragSpec& drag, double area);
+
+/// All properties but the fluid's; direct stiffnesses replace those of shape and material.
 SectionProperties section_properties(const RodSpec& rod);
 
 }  // namespace cprsim

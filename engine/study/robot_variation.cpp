@@ -145,9 +145,13 @@ void add_bodies(const Robot& robot, bool metric, RobotVariation& v) {
     if (now.follower || now.torque.norm() > 0) v.potential = false;
     if (!now.follower) v.K.block<3, 3>(at, at) -= swing(now.force, arm);
   }
-  for (const RobotRod& rod : robot.rods)
+  for (const RobotRod& rod : robot.rods) {
     for (const PointLoad& load : rod.forcing.loads)
       if (load.follower || load.torque.norm() > 0) v.potential = false;
+    const FluidProperties& fluid = rod.section.fluid;
+    if ((fluid.normal > 0 || fluid.tangential > 0) && !rod.forcing.wind.isZero(0))
+      v.potential = false;
+  }
 }
 
 /// A ball's first three rows are no demand but its spring's moment, child axes; in K with the sign

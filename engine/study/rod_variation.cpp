@@ -113,6 +113,10 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       half_all.middleRows<3>(row) = w * (0.5 * B * phi[j] + hat(point.n) * d_s[j]);
       d_all.middleRows<3>(row) = d;
       dw_all.middleRows<3>(row) = (w * field.rhoA) * d;
+      if (field.added_mass > 0) {
+        const Vec3 t = point.R.col(2);
+        dw_all.middleRows<3>(row) += (w * field.added_mass) * (d - t * (t.transpose() * d));
+      }
       if (rotary) {
         const Rows3 spin = point.R.transpose() * phi[j];
         const Rows3 weighted = w * field.rhoJ.asDiagonal() * spin;

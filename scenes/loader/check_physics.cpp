@@ -62,7 +62,7 @@ void check_effect_data(Reading& r, const Node& world) {
   if (!scene.rods.empty() && !given_anywhere(world, "cprsim:effects"))
     r.report.missing("E504", world, "a world with rods needs <cprsim:effects>, even if empty")
         .suggestion = "<cprsim:effects><gravity/></cprsim:effects>";
-  const bool damping = scene.effects.has(Effect::kDamping);
+  const bool damping = scene.effects.has(Effect::kDamping), drag = scene.effects.has(Effect::kDrag);
   for (std::size_t k = 0; k < scene.rods.size(); ++k) {
     const RodSpec& rod = scene.rods[k];
     const Node& node = node_of_rod(r, k);
@@ -71,6 +71,10 @@ void check_effect_data(Reading& r, const Node& world) {
       r.report.missing("E503", node, "damping is listed, rod '" + rod.name + "' has no <damping>");
     if (!damping && rod.damping)
       r.report.note("W511", node, "rod '" + rod.name + "' has <damping>, damping is not listed");
+    if (drag && !rod.drag && !switched_off(rod, Effect::kDrag) && !given_anywhere(node, "drag"))
+      r.report.missing("E503", node, "drag is listed, rod '" + rod.name + "' has no <drag>");
+    if (!drag && rod.drag)
+      r.report.note("W511", node, "rod '" + rod.name + "' has <drag>, drag is not listed");
     // a material that could not be read has its own error
     const bool massless = !rod.material && !r.report.failed();
     const bool heavy =
@@ -85,6 +89,11 @@ void check_effect_data(Reading& r, const Node& world) {
   if (damping && scene.rods.empty())
     r.report.at(Severity::kWarning, "W503", asked[static_cast<std::size_t>(Effect::kDamping)], 8,
                 "damping is listed and there is no rod; joints have their own <dynamics>");
+  if (drag && scene.rods.empty())
+    r.report.at(Severity::kWarning, "W503", asked[static_cast<std::size_t>(Effect::kDrag)], 5,
+                "drag is listed and there is no rod; links do not feel it");
+  if (const Node* wind = world.child("wind"); wind && !drag && !scene.wind.isZero())
+    r.report.note("W511", *wind, "<wind> is given, drag is not among the effects");
 }
 
 double thickness(const SectionSpec& section) {

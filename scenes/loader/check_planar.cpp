@@ -19,6 +19,7 @@ class PlanarCheck {
 
   void run(const Node& world) {
     gravity(world);
+    current(world);
     for (const JointSpec& joint : scene_.joints)
       check(joint);
     for (std::size_t k = 0; k < scene_.rods.size(); ++k)
@@ -58,6 +59,13 @@ class PlanarCheck {
           .at(Severity::kError, kCode,
               scene_.effects.asked_at[static_cast<std::size_t>(Effect::kGravity)], 7, message)
           .suggestion = "give a <gravity> in the plane";
+  }
+
+  void current(const Node& world) {
+    const Node* wind = world.child("wind");
+    if (wind && scene_.effects.has(Effect::kDrag) && leaves(scene_.wind))
+      r_.report.error(kCode, *wind, "the current, " + words(scene_.wind) + " m/s, leaves the plane",
+                      "leave <planar> out: the spatial model takes it");
   }
 
   static std::string words(const Vec3& v) {
@@ -110,6 +118,12 @@ class PlanarCheck {
     if (!rod.rest_curvature.isZero())
       complain(rod.place, 10,
                "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
+    const Method method = rod.method.value_or(scene_.solver.method);
+    if (scene_.effects.has(Effect::kDrag) && rod.drag && !rod.lacks("drag") &&
+        (method == Method::kAuto || method == Method::kShooting))
+      complain(rod.place, 10,
+               "rod '" + rod.name + "' has drag, which shooting in a plane does not know",
+               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
     const bool tip_held = rod.tip.joint != EndJoint::kFree;
     if (!end(rod, rod.base, "base") || (tip_held && !end(rod, rod.tip, "tip"))) return;
     const Pose base = in_world(rod.base.at), tip = tip_held ? in_world(rod.tip.at) : base;

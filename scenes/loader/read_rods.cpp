@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods. A rod takes each part it does not give itself from its class, that class from its own, and
-// so on; within <material>, <stiffness> and <damping> value by value, everything else as a whole.
+// so on; within <material>, <stiffness>, <damping> and <drag> value by value, everything else as a
+// whole.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -191,6 +192,18 @@ void read_rest(Reading& r, const Chain& chain, RodSpec& rod) {
                        " would be bent more tightly than its own thickness allows");
 }
 
+void read_drag(Reading& r, const Chain& chain, RodSpec& rod) {
+  const Node* drag = part(chain, "drag");
+  if (!drag) return;
+  const auto value = [&](const char* key) { return number_of(part(chain, "drag", key), 0); };
+  rod.drag = DragSpec{value("normal"), value("tangential"), value("fluid_density"),
+                      value("added_mass"), drag->place};
+  if (rod.drag->added_mass > 0 && !part(chain, "drag", "fluid_density") &&
+      !mentioned({drag}, "fluid_density"))
+    r.report.missing("E505", *drag, "<added_mass> is a multiple of the fluid displaced")
+        .suggestion = "add <fluid_density>";
+}
+
 // what neither measured stiffness nor material gives
 void require_stiffness(Reading& r, const Chain& chain, const RodSpec& rod) {
   const Node& node = *chain.front();
@@ -317,6 +330,7 @@ void read_rods(Reading& r, const Node&) {
         rod.damping = DampingSpec{value("bending"), value("torsion"), value("axial"),
                                   value("shear"), damping->place};
       }
+      read_drag(r, chain, rod);
       rod.gravity = flag_of(part(chain, "gravity"), true);
       read_without(r, chain, rod);
       if (const Node* visual = part(chain, "visual"))

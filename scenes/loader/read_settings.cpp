@@ -190,8 +190,7 @@ void override_effects(Reading& r) {
         const auto effect = static_cast<Effect>(k);
         if (word != effect_name(effect)) continue;
         known = true;
-        const bool later = effect == Effect::kDrag || effect == Effect::kSelfContact ||
-                           effect == Effect::kTendonFriction;
+        const bool later = effect == Effect::kSelfContact || effect == Effect::kTendonFriction;
         if (later && on)
           r.report.at(Severity::kError, "E520", {}, 0,
                       option + word + ": not available in this version");
@@ -263,6 +262,8 @@ std::optional<Method> method_attribute(const Node& node) {
 void read_settings(Reading& r, const Node& world) {
   r.scene.name = world.value("name");
   r.scene.gravity = vec3_of(world.child("gravity"), r.scene.gravity);
+  if (const Node* wind = world.child("wind"))
+    r.scene.wind = vec3_of(wind->child("linear_velocity"), r.scene.wind);
   const Node* physics = chosen_physics(world);
   if (physics) {
     r.scene.max_step_size = number_of(physics->child("max_step_size"), r.scene.max_step_size);

@@ -85,6 +85,20 @@ TEST(RodClasses, GiveWhatTheRodDoesNotSay) {
   EXPECT_EQ(rod.base.joint, EndJoint::kBall);
 }
 
+TEST(Fluid, IsReadValueByValueFromRodsAndClasses) {
+  const auto scene = scene_of(R"(
+    <cprsim:rod_class name="wet" class="steel">
+      <drag><normal>1.2</normal><fluid_density>1000</fluid_density></drag></cprsim:rod_class>
+    <cprsim:rod name="a" class="wet"><base attached_to="base" joint="fixed"/><length>0.2</length>
+      <drag><tangential>0.1</tangential><added_mass>1</added_mass></drag></cprsim:rod>)");
+  EXPECT_FALSE(scene->rods.at(0).drag.has_value());
+  const DragSpec& drag = scene->rods.at(1).drag.value();
+  EXPECT_EQ(drag.normal, 1.2);
+  EXPECT_EQ(drag.tangential, 0.1);
+  EXPECT_EQ(drag.fluid_density, 1000);
+  EXPECT_EQ(drag.added_mass, 1);
+}
+
 TEST(RestShapes, AreACurvatureOrAHelixAndInherited) {
   const auto scene = scene_of(R"(
     <cprsim:rod_class name="bent" class="steel"><rest><curvature>1 -2 0.5</curvature></rest></cprsim:rod_class>

@@ -159,7 +159,7 @@ TEST(Options, SwitchEffects) {
   options.with = {"sheer"};
   EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E307"});
   options.with = {"drag"};
-  EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E520"});
+  EXPECT_EQ(error_codes(load_text(scene_text(), options)), std::vector<std::string>{"E503"});
 }
 
 }  // namespace

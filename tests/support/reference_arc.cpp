@@ -19,13 +19,20 @@ Eigen::Map<State> entries(N_Vector y) {
   return Eigen::Map<State>(N_VGetArrayPointer(y));
 }
 
-int slope(realtype, N_Vector y_vector, N_Vector y_s_vector, void* rod_pointer) {
-  const ReferenceRod& rod = *static_cast<const ReferenceRod*>(rod_pointer);
+int slope(realtype s, N_Vector y_vector, N_Vector y_s_vector, void* rod_pointer) {
+  const ReferenceRod& given = *static_cast<const ReferenceRod*>(rod_pointer);
   const Eigen::Map<State> y = entries(y_vector);
   Eigen::Map<State> y_s = entries(y_s_vector);
   const Quat h(y[6], y[3], y[4], y[5]);
   const Mat3 R = h.normalized().toRotationMatrix();
   const Vec3 n = y.segment<3>(7), m = y.segment<3>(10);
+  ReferenceRod rod;
+  rod.C_bt = given.C_bt;
+  rod.C_se = given.C_se;
+  rod.u_ref = given.u_ref;
+  rod.f = given.f;
+  rod.l = given.l;
+  if (given.vary) given.vary(s, R, rod);
 
   // (2)
   const Vec3 u = rod.u_ref + rod.C_bt * (R.transpose() * m);

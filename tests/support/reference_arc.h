@@ -6,6 +6,8 @@
 // step).
 #pragma once
 
+#include <functional>
+
 #include "engine/math/types.h"
 
 namespace cprsim {
@@ -18,6 +20,8 @@ struct ReferenceRod {
   Vec3 u_ref = Vec3::Zero();
   Vec3 f = Vec3::Zero();  ///< force
   Vec3 l = Vec3::Zero();  ///< moment
+  /// Changes `here` to what holds at s with the section turned by R.
+  std::function<void(double s, const Mat3& R, ReferenceRod& here)> vary;
 };
 
 /// A section: pose, and the wrench that the part beyond it exerts on the part before it, world

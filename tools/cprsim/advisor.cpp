@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers: gravity ρAgL³/EI, shear EI/(κGA L²), extension and rotary inertia I/(A L²), damping
-// the ratio ζ₁ of the first bending mode.
+// the ratio ζ₁ of the first bending mode, drag the largest ratio of a fluid's forces to the rod's
+// own (engine/run/facts.cpp).
 #include "tools/cprsim/advisor.h"
 
 namespace cprsim {
@@ -41,6 +42,8 @@ std::vector<AdviceLine> advise(const Scene& scene, const RodFacts& rod) {
   add(Effect::kGravity, "rho A g L^3 / EI", rod.gravity_number);
   add(Effect::kShear, "EI / (k G A L^2)", rod.shear_number);
   add(Effect::kExtension, "I / (A L^2)", rod.extension_number);
+  // without <drag> nothing is known of the fluid
+  if (rod.drag_number > 0) add(Effect::kDrag, "fluid / own force", rod.drag_number);
   if (scene.simulation.mode == Mode::kDynamic) {
     add(Effect::kRotaryInertia, "I / (A L^2)", rod.extension_number);
     add(Effect::kDamping, "zeta_1", rod.damping_ratio);

@@ -32,7 +32,7 @@ bool alike(const RodFacts& a, const RodFacts& b) {
     return std::vector<double>{
         r.mass,         r.bending_x,        r.bending_y,     r.torsion,         r.axial,
         r.shear_x,      r.first_frequency,  r.buckling_load, r.growth_exponent, r.gravity_number,
-        r.shear_number, r.extension_number, r.damping_ratio};
+        r.shear_number, r.extension_number, r.damping_ratio, r.drag_number};
   };
   const auto pieces = [](const RodFacts& r) {
     return std::tuple(r.method, r.method_reason, r.rule, r.elements, r.order, r.segments);

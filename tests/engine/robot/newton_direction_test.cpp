@@ -143,6 +143,19 @@ TEST(NewtonDirection, IsExactForEveryEffectAlone) {
   }
 }
 
+TEST(NewtonDirection, IsExactInAFluid) {
+  for (bool stretches : {false, true}) {
+    Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+    if (stretches) set_all_effects(scene);
+    scene.effects.set(Effect::kDrag, true);
+    scene.wind = {0.8, -0.4, 0.5};
+    const std::string what = stretches ? "extensible" : "inextensible";
+    expect_exact(scene, {}, what + ", statics");
+    expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+    expect_exact(scene, {Mode::kGeneralizedAlpha}, what + ", dynamics without body rates");
+  }
+}
+
 TEST(NewtonDirection, IsExactForEveryIntegrator) {
   for (ArcIntegrator integrator : kIntegrators) {
     const std::string what = "integrator " + std::to_string(static_cast<int>(integrator));

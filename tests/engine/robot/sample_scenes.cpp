@@ -33,6 +33,7 @@ RodSpec sample_rod(const std::string& name) {
   rod.stiffness.shear_x = 35;
   rod.stiffness.shear_y = 45;
   rod.damping = DampingSpec{0.003, 0.002, 0.2, 0.1, {}};
+  rod.drag = DragSpec{0.3, 0.1, 80, 1.5, {}};
   return rod;
 }
 

@@ -33,6 +33,7 @@ struct Case {
 struct Cell {
   CellModel model;
   std::vector<CellStage> stages;
+  std::vector<FluidSection> fluid;
   NodeState start{};
   const CellKernel* kernel = nullptr;
 
@@ -54,6 +55,7 @@ struct Cell {
 
   NodeState evaluate() {
     NodeState end{};
+    model.fluid = fluid.data();
     kernel->evaluate(model, stages.data(), start, end);
     return end;
   }
@@ -92,6 +94,15 @@ Cell make_cell(const Case& c, unsigned seed) {
     put(s.v0, Vec3::UnitZ() + 0.2 * numbers.vec3());
     put(s.v, Vec3::UnitZ() + 0.2 * numbers.vec3());
     Eigen::Map<RowMat3>{s.R_start} = R * exp_so3(0.5 * numbers.vec3());
+  }
+  cell.fluid.assign(immersed(c.law) ? cell.stages.size() : 0, FluidSection{});
+  for (FluidSection& f : cell.fluid) {
+    f.normal = 0.4;
+    f.tangential = 0.2;
+    f.added_mass = 0.3;
+    // never at rest along the axis, where drag has no second derivative
+    put(f.velocity_h, 8 * R.col(2) + numbers.vec3());
+    put(f.acceleration_h, numbers.vec3());
   }
   return cell;
 }
@@ -169,7 +180,8 @@ std::vector<Case> cases() {
   for (ArcIntegrator integrator :
        {ArcIntegrator::kEuler, ArcIntegrator::kGauss2, ArcIntegrator::kGauss4,
         ArcIntegrator::kGauss6, ArcIntegrator::kRk4})
-    for (CellLaw law : {CellLaw::kKirchhoff, CellLaw::kExtensibleStatic, CellLaw::kExtensible})
+    for (CellLaw law : {CellLaw::kKirchhoff, CellLaw::kExtensibleStatic, CellLaw::kExtensible,
+                        CellLaw::kKirchhoffFluid, CellLaw::kExtensibleFluid})
       for (bool rotary : {false, true})
         for (bool inertia : {false, true})
           for (bool body_rates : {false, true}) {
@@ -233,6 +245,7 @@ TEST(Cell, GaussRunBackwardsReturnsToTheStart) {
     back.start = end;
     back.model.h = -cell.model.h;
     std::reverse(back.stages.begin(), back.stages.end());
+    std::reverse(back.fluid.begin(), back.fluid.end());
     const NodeState again = back.evaluate();
     constexpr double kRoundOff = 1e-14;  // of numbers near 1
     EXPECT_LT((rotation_of(again) - rotation_of(start)).norm(), kRoundOff) << c.name();

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/rod/immersion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cprsim {
+
+void Immersion::prepare(const FluidProperties& fluid, const StageRates& rates,
+                        const RodForcing& forcing, const Track& positions) {
+  if (places_.empty()) return;
+  rates_ = rates;
+  wind_ = forcing.wind;
+  acts_ = rates.dynamic() || !wind_.isZero(0);
+  for (std::size_t j = 0; j < places_.size(); ++j) {
+    FluidSection& place = places_[j];
+    place.normal = fluid.normal;
+    place.tangential = fluid.tangential;
+    place.added_mass = fluid.added_mass;
+    Vec3 v_h = -wind_, a_h = Vec3::Zero();
+    if (rates.dynamic()) {
+      const auto i = 3 * static_cast<Eigen::Index>(j);
+      v_h += positions.x_h.segment<3>(i);
+      a_h = rates.c_w * positions.x_h.segment<3>(i) + positions.v_h.segment<3>(i);
+    }
+    Eigen::Map<Vec3>(place.velocity_h) = v_h;
+    Eigen::Map<Vec3>(place.acceleration_h) = a_h;
+  }
+}
+
+double Immersion::stiffness() const {
+  double largest = 0;
+  if (acts_)
+    for (const FluidSection& place : places_)
+      for (int i = 0; i < 9; i += 4)
+        largest = std::max(largest, std::abs(place.force_p[i]));
+  return largest;
+}
+
+// v_n, v_t are relative to the current, whose power is what the drag takes out plus what it does on
+// the rod: F·p_t = F·v + F·V.
+void Immersion::add_power(std::size_t place, const Vec3& axis, double weight,
+                          const Track& positions, RodEnergy& energy) const {
+  if (!rates_.dynamic()) return;
+  const FluidSection& at = places_[place];
+  const auto i = 3 * static_cast<Eigen::Index>(place);
+  const Vec3 p_t = positions.v.segment<3>(i), a = positions.a.segment<3>(i), v = p_t - wind_;
+  const double along = v.dot(axis);
+  const Vec3 v_n = v - along * axis;
+  const Vec3 drag = -at.normal * v_n.norm() * v_n - at.tangential * std::abs(along) * along * axis;
+  energy.damping_power -= weight * drag.dot(v);
+  energy.fluid_power +=
+      weight * (drag.dot(wind_) - at.added_mass * (a - a.dot(axis) * axis).dot(p_t));
+}
+
+}  // namespace cprsim
