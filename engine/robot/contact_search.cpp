@@ -107,10 +107,13 @@ double RodContacts::moved(const Rod& rod, const Scan& since) const {
         far = std::max(far, (position_of(nodes[k]) - shift * since.nodes[k]).norm());
     } else if (obstacle.rod >= 0) {
       const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
-      double their = 0;
-      for (std::size_t k = 0; k < others.size(); ++k)
-        their = std::max(their, (position_of(others[k]) - since.others[o][k]).norm());
-      far += their;
+      far = 0;
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        const Vec3 by = position_of(nodes[k]) - since.nodes[k];
+        for (std::size_t m = 0; m < others.size(); ++m)
+          far = std::max(far, (by - position_of(others[m]) + since.others[o][m]).squaredNorm());
+      }
+      far = std::sqrt(far);
     }
     most = std::max(most, far);
   }
@@ -121,20 +124,19 @@ double RodContacts::moved(const Rod& rod, const Scan& since) const {
 double RodContacts::passed(const Rod& rod, const Scan& since, std::size_t o, std::size_t c) const {
   const Obstacle& obstacle = rod.obstacles[o];
   const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  const auto farther = [](const std::vector<NodeState>& now, const std::vector<Vec3>& then,
-                          const Pose& shift,
-                          std::size_t k) { return (position_of(now[k]) - shift * then[k]).norm(); };
   const Pose shift =
       obstacle.body < 0 ? Pose{} : robot_.body_pose(obstacle.body) * since.bodies[o].inverse();
-  const double own =
-      std::max(farther(nodes, since.nodes, shift, c), farther(nodes, since.nodes, shift, c + 1));
-  if (obstacle.rod < 0) return own;
+  const Vec3 by[2] = {position_of(nodes[c]) - shift * since.nodes[c],
+                      position_of(nodes[c + 1]) - shift * since.nodes[c + 1]};
+  if (obstacle.rod < 0) return std::max(by[0].norm(), by[1].norm());
   const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
   const std::size_t foot = near(since, rod, c, o).foot;
-  double their = 0;
-  for (std::size_t k = foot > 0 ? foot - 1 : 0; k < std::min(foot + 3, others.size()); ++k)
-    their = std::max(their, farther(others, since.others[o], Pose{}, k));
-  return own + their;
+  double far = 0;
+  for (std::size_t k = foot > 0 ? foot - 1 : 0; k < std::min(foot + 3, others.size()); ++k) {
+    const Vec3 their = position_of(others[k]) - since.others[o][k];
+    far = std::max({far, (by[0] - their).norm(), (by[1] - their).norm()});
+  }
+  return far;
 }
 
 // Twice, since a cell between its ends moves with their tangents too.
