@@ -29,6 +29,7 @@ Tube::Ring between(const Tube::Ring& a, const Tube::Ring& b, double t) {
   ring.rotation = Quat(a.rotation).slerp(t, Quat(b.rotation)).toRotationMatrix();
   const auto f = static_cast<float>(t);
   ring.color = (1 - f) * a.color + f * b.color;
+  ring.s = (1 - t) * a.s + t * b.s;
   return ring;
 }
 
@@ -41,7 +42,7 @@ Tube make_tube(const RodSpec& spec, const Look& look, const RodSample& rod, Colo
   for (const RodPoint& point : rod.points) {
     const Color color = by == ColorBy::kNone ? Color(look.diffuse.cast<float>())
                                              : color_of(by, colored_value(by, point), range);
-    const Tube::Ring ring{point.position, point.rotation, color};
+    const Tube::Ring ring{point.position, point.rotation, color, point.s};
     if (!ring.position.allFinite() || !ring.rotation.allFinite()) continue;
     if (!tube.rings.empty()) {
       const Tube::Ring last = tube.rings.back();
@@ -70,6 +71,19 @@ Ribbon make_ribbon(const TraceLine& trace, std::size_t index, double time) {
     }
     if (opacity <= 0 || !point.position.allFinite()) continue;
     ribbon.points.push_back({point.position, static_cast<float>(opacity)});
+  }
+  return ribbon;
+}
+
+/// A dark line beside the rod.
+Ribbon make_tendon(const TendonSpec& tendon, const Tube& rod) {
+  Ribbon ribbon;
+  ribbon.color = Color(0.16F, 0.17F, 0.19F);
+  ribbon.pixels = 1.5;
+  for (const Tube::Ring& ring : rod.rings) {
+    if (ring.s > tendon.termination + 1e-9) break;
+    const Vec2 r = tendon_offset(tendon, ring.s, ring.s).r;
+    ribbon.points.push_back({ring.position + ring.rotation.leftCols<2>() * r, 0.9F});
   }
   return ribbon;
 }
@@ -218,6 +232,8 @@ Drawing make_drawing(const Scene& scene, const std::vector<Part>& parts, const S
   for (std::size_t i = 0; i < rods; ++i) {
     Tube tube = make_tube(scene.rods[i], look_of_rod(scene.rods[i], i), now.rods[i], decor.color_by,
                           color_range);
+    for (const TendonSpec& tendon : scene.tendons)
+      if (tendon.rod == static_cast<int>(i)) drawing.ribbons.push_back(make_tendon(tendon, tube));
     if (tube.rings.size() > 1) drawing.tubes.push_back(std::move(tube));
   }
   for (std::size_t i = 0; i < decor.traces.size(); ++i) {

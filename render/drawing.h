@@ -32,6 +32,7 @@ struct Tube {
     Vec3 position;
     Mat3 rotation;  ///< section to world, z = tangent
     Color color;
+    double s = 0;  ///< fraction of the length
   };
 
   std::vector<Ring> rings;

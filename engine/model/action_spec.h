@@ -13,13 +13,14 @@
 
 namespace cprsim {
 
-enum class DriveQuantity { kPosition, kVelocity, kEffort, kLength };
+enum class DriveQuantity { kPosition, kVelocity, kEffort, kLength, kTension, kDisplacement };
 
 struct DriveSpec {
   Place place;
   DriveQuantity quantity = DriveQuantity::kPosition;
   int joint = -1;   ///< index into Scene::joints, or
-  int rod = -1;     ///< index into Scene::rods (length)
+  int rod = -1;     ///< index into Scene::rods (length), or
+  int tendon = -1;  ///< index into Scene::tendons (tension, displacement)
   int freedom = 0;  ///< which coordinate of the joint, from 0
   Profile profile;
 };

@@ -55,6 +55,7 @@ const char* unit_of(Quantity quantity) {
   switch (quantity) {
     case Quantity::kPosition:
     case Quantity::kLength:
+    case Quantity::kDisplacement:
     case Quantity::kContactPenetration:
       return "m";
     case Quantity::kLinearVelocity:
@@ -63,6 +64,7 @@ const char* unit_of(Quantity quantity) {
     case Quantity::kAngularVelocity:
       return "rad/s";
     case Quantity::kForce:
+    case Quantity::kTension:
     case Quantity::kContactForce:
     case Quantity::kContactFriction:
       return "N";
@@ -196,6 +198,10 @@ std::vector<Scalar> scalars_of(const Scene& scene, const Entity& entity) {
       list.add_point("base", 0);
       list.add_point("tip", 1);
       break;
+    case ChannelEntity::kTendon:
+      list.add("tension", Quantity::kTension);
+      list.add("displacement", Quantity::kDisplacement);
+      break;
     default:
       add_sums(list, entity.kind);
   }
@@ -215,6 +221,8 @@ std::vector<Entity> entities_of(const Scene& scene) {
     add(scene.joints[k].name, ChannelEntity::kJoint, k);
   for (std::size_t k = 0; k < scene.rods.size(); ++k)
     add(scene.rods[k].name, ChannelEntity::kRod, k);
+  for (std::size_t k = 0; k < scene.tendons.size(); ++k)
+    add(scene.tendons[k].name, ChannelEntity::kTendon, k);
   all.push_back({"energy", ChannelEntity::kEnergy, 0});
   all.push_back({"solver", ChannelEntity::kSolver, 0});
   all.push_back({"contact", ChannelEntity::kContact, 0});

@@ -11,7 +11,17 @@ namespace cprsim {
 
 struct Scene;
 
-enum class ChannelEntity { kBody, kFrame, kJoint, kRodPoint, kRod, kEnergy, kSolver, kContact };
+enum class ChannelEntity {
+  kBody,
+  kFrame,
+  kJoint,
+  kRodPoint,
+  kRod,
+  kTendon,
+  kEnergy,
+  kSolver,
+  kContact
+};
 
 enum class Quantity {
   kPosition,
@@ -23,6 +33,8 @@ enum class Quantity {
   kCurvature,     ///< u, section axes
   kShearStretch,  ///< v, section axes
   kLength,
+  kTension,       ///< of a tendon at its motor
+  kDisplacement,  ///< of a tendon: what its motor has pulled in
   kJointPosition,
   kJointVelocity,
   kJointEffort,
@@ -50,7 +62,7 @@ struct Channel {
   std::string name;  ///< full, e.g. robot::platform.position.x
   std::string unit;  ///< "m", "rad/s", "1"
   ChannelEntity entity = ChannelEntity::kBody;
-  int index = -1;  ///< of the body, frame, joint or rod in the scene
+  int index = -1;  ///< of the body, frame, joint, rod or tendon in the scene
   double s = 0;    ///< rod points: fraction of the length, 0 base .. 1 tip
   Quantity quantity = Quantity::kPosition;
   int component = 0;  ///< x y z (w)

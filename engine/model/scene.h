@@ -16,6 +16,7 @@
 #include "engine/model/rod_spec.h"
 #include "engine/model/solver_spec.h"
 #include "engine/model/sweep_spec.h"
+#include "engine/model/tendon_spec.h"
 #include "engine/model/view_spec.h"
 
 namespace cprsim {
@@ -45,6 +46,7 @@ struct Scene {
   std::vector<NamedFrame> frames;
   std::vector<JointSpec> joints;
   std::vector<RodSpec> rods;
+  std::vector<TendonSpec> tendons;
   std::vector<DriveSpec> drives;
   std::vector<LoadSpec> loads;
   std::vector<TargetSpec> targets;

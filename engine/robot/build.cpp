@@ -152,8 +152,28 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.drag = rod.section.fluid.resists();
   for (const LoadSpec* load : rod.loads)
     plan.stations.push_back(load->rod_s);
+  plan.stations.insert(plan.stations.end(), rod.breaks.begin(), rod.breaks.end());
+  for (const RobotTendon& tendon : rod.tendons)
+    plan.tendons.emplace_back(*tendon.spec);
   plan.solver = &scene.solver;
   return plan;
+}
+
+void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
+  for (std::size_t k = 0; k < scene.tendons.size(); ++k) {
+    const TendonSpec& spec = scene.tendons[k];
+    if (spec.rod != static_cast<int>(index)) continue;
+    if (rod.length_drive)
+      throw std::invalid_argument("the length of rod '" + rod.spec->name +
+                                  "' cannot be driven: tendon '" + spec.name + "' runs along it");
+    RobotTendon tendon{static_cast<int>(k), &spec, nullptr};
+    for (const DriveSpec& drive : scene.drives)
+      if (drive.tendon == tendon.index) tendon.drive = &drive;
+    rod.tendons.push_back(tendon);
+    for (double s : Tendon(spec).breaks())
+      if (std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
+        rod.breaks.push_back(s);
+  }
 }
 
 void add_rods(Robot& robot) {
@@ -174,6 +194,7 @@ void add_rods(Robot& robot) {
       if (drive.rod == static_cast<int>(i)) rod.length_drive = &drive.profile;
     for (const LoadSpec& load : scene.loads)
       if (load.rod == static_cast<int>(i)) rod.loads.push_back(&load);
+    add_tendons(scene, i, rod);
     rod.gravity = spec.gravity && !spec.lacks("gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);
@@ -264,6 +285,24 @@ PointLoad load_at(const LoadSpec& load, double t, bool before) {
   const double f = load.has_profile ? load.profile.evaluate(t, before).value : 1.0;
   return {load.rod_s, f * (load.R_expressed * load.force), f * (load.R_expressed * load.torque),
           load.follower};
+}
+
+TendonPull pull_at(const RobotTendon& tendon, double t, bool before) {
+  if (!tendon.drive) return {};
+  return {tendon.drive->profile.evaluate(t, before).value,
+          tendon.drive->quantity == DriveQuantity::kDisplacement};
+}
+
+void pull_tendons(RobotRod& rod, double t, bool before, double share) {
+  for (double s : rod.breaks) {
+    rod.forcing.loads.emplace_back();
+    rod.forcing.loads.back().s = s;
+  }
+  rod.forcing.tendons.clear();
+  for (const RobotTendon& tendon : rod.tendons) {
+    rod.forcing.tendons.push_back(pull_at(tendon, t, before));
+    rod.forcing.tendons.back().value *= share;
+  }
 }
 
 Robot build_robot(const Scene& scene) {

@@ -50,6 +50,7 @@ void Equations::prepare_rods() {
     forcing.loads.clear();
     for (const LoadSpec* load : rod.loads)
       forcing.loads.push_back(scaled_load(*load));
+    if (!rod.tendons.empty()) pull_tendons(rod, t_, before_, acting());
     forcing.tolerance = tolerance_;
     forcing.axial_softness = softness_;
     forcing.relaxation = drag_ * rod.section.K_bt.head<2>().maxCoeff() / std::pow(rod.length, 4);
@@ -91,7 +92,7 @@ void Equations::drive_joint(const JointDrive& drive) {
                                          4 * profile.evaluate(from + 0.5 * h, false).value + value);
       }
       break;
-    case DriveQuantity::kLength:
+    default:  // of a rod or a tendon
       break;
   }
 }

@@ -30,6 +30,12 @@ struct Attachment {
   Pose X;
 };
 
+struct RobotTendon {
+  int index = -1;  ///< into Scene::tendons
+  const TendonSpec* spec = nullptr;
+  const DriveSpec* drive = nullptr;
+};
+
 struct RobotRod {
   const RodSpec* spec = nullptr;
   SectionProperties section;
@@ -40,6 +46,8 @@ struct RobotRod {
   double length = 0;
   const Profile* length_drive = nullptr;
   std::vector<const LoadSpec*> loads;
+  std::vector<RobotTendon> tendons;
+  std::vector<double> breaks;  ///< s / L of the tendons' breaks: stations without a load
   bool gravity = true;
   RodForcing forcing;  ///< at the current instant
 };
@@ -99,6 +107,12 @@ struct Robot {
 /// A load at time t: world axes, or those of its section or frame if it follows. `before`: left
 /// limit at a jump.
 PointLoad load_at(const LoadSpec& load, double t, bool before);
+
+/// What a tendon's motor prescribes at time t; a tendon without one is slack.
+TendonPull pull_at(const RobotTendon& tendon, double t, bool before);
+
+/// Into the rod's forcing, times `share`; breaks of tendons are stations without a load.
+void pull_tendons(RobotRod& rod, double t, bool before, double share);
 
 /// @throws std::invalid_argument for what this version cannot do.
 Robot build_robot(const Scene& scene);

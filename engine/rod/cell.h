@@ -14,10 +14,15 @@
 // unknowns of the outer Newton ("lifted", Albersmeyer & Diehl, SIAM J. Optim. 20, 2010): a sweep
 // evaluates (1)-(4) explicitly, has (5), (6) as residuals, and eliminates their linearisation cell
 // by cell. Nothing is iterated inside a cell.
+//
+// With tendons n and m are those of rod and tendons together, so that (3), (4) stay as they are; in
+// (5), (6) the rod's own part is R^T m - Lambda_m(u, v), R^T n - Lambda_n(u, v), with the tendons'
+// part of engine/section/tendon_law.h.
 #pragma once
 
 #include "engine/rod/tableau.h"
 #include "engine/section/fluid_section.h"
+#include "engine/section/tendon_section.h"
 
 namespace cprsim {
 
@@ -27,11 +32,14 @@ enum class CellLaw {
   kExtensibleStatic,  ///< (6) explicit, valid while k = 0
   kExtensible,        ///< stage v lifted
   kKirchhoffFluid,    ///< v = v0 and a fluid's force in (3): engine/section/fluid.h
-  kExtensibleFluid    ///< stage v lifted, likewise
+  kExtensibleFluid,   ///< stage v lifted, likewise
+  kTendons            ///< stage v lifted, and tendons are part of the law
 };
 
+/// Whether stage rates v are unknowns.
 constexpr bool lifts_stretch(CellLaw law) {
-  return law == CellLaw::kExtensible || law == CellLaw::kExtensibleFluid;
+  return law == CellLaw::kExtensible || law == CellLaw::kExtensibleFluid ||
+         law == CellLaw::kTendons;
 }
 
 constexpr bool immersed(CellLaw law) {
@@ -53,7 +61,8 @@ struct CellModel {
   double rhoJ[3] = {};      ///< section inertia, kg m
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
-  FluidSection* fluid = nullptr;  ///< of the cell's stages, for the laws of a fluid
+  FluidSection* fluid = nullptr;     ///< of the cell's stages, for the laws of a fluid
+  TendonSection* tendons = nullptr;  ///< of the cell's stages; only read with kTendons
 };
 
 /// One stage: inputs of the balance, unknowns, and what the last evaluation found.
@@ -62,7 +71,7 @@ struct CellStage {
   double R_start[9], theta_h[3],
       omega_h[3];  ///< rotary history: reference rotation and affine parts
 
-  double w[3], v[3];  ///< unknowns (v: kExtensible only, otherwise a result)
+  double w[3], v[3];  ///< unknowns (v: if lifted, otherwise a result)
 
   double Omega[3], R[9], p[3], n[3], m[3], u[3], tau[3];  ///< tau = R v
   double torque[3], torque_phi[9];  ///< t of (4) and its derivative by the world rotation increment

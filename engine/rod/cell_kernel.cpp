@@ -3,9 +3,11 @@
 // This file is compiled once per vector width (CPRSIM_KERNEL names the copy). Columns are
 // independent and contraction is off, so all copies give the same bits.
 #include "engine/rod/cell.h"
+#include "engine/rod/cell_rows.h"
 #include "engine/section/fluid.h"
 #include "engine/section/rotary.h"
 #include "engine/section/small_vector.h"
+#include "engine/section/tendon_law.h"
 
 namespace cprsim {
 namespace {
@@ -92,11 +94,16 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       m = m + (h * T.a[j][k]) * m_s[k];
     store(st[j].m, m);
     const M3 R = load_matrix(st[j].R);
-    store(st[j].residual_u,
-          load(st[j].u) - load(st[j].u0) - scaled(M.C_bt, transposed_times(R, m)));
+    V3 own_m = transposed_times(R, m), own_n = transposed_times(R, load(st[j].n));
+    if constexpr (law == CellLaw::kTendons) {
+      TendonSection& tendons = M.tendons[j];
+      evaluate_tendons(tendons, load(st[j].u), load(st[j].v));
+      own_m = own_m - load(tendons.moment);
+      own_n = own_n - load(tendons.force);
+    }
+    store(st[j].residual_u, load(st[j].u) - load(st[j].u0) - scaled(M.C_bt, own_m));
     if constexpr (lifts_stretch(law))
-      store(st[j].residual_v,
-            load(st[j].v) - load(st[j].v0) - scaled(M.C_se, transposed_times(R, load(st[j].n))));
+      store(st[j].residual_v, load(st[j].v) - load(st[j].v0) - scaled(M.C_se, own_n));
   }
 
   V3 p = p0, n = n0, m = m0;
@@ -110,91 +117,6 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
   store(end.p, p);
   store(end.n, n);
   store(end.m, m);
-}
-
-// Rows of sensitivities: three rows of W columns.
-template <int W>
-struct alignas(64) Rows {
-  double r[3][W];
-};
-
-template <int W>
-inline void set_zero(Rows<W>& A) {
-  for (auto& row : A.r)
-    for (int c = 0; c < W; ++c)
-      row[c] = 0;
-}
-
-template <int W>
-inline void add_scaled(Rows<W>& A, double s, const Rows<W>& B) {
-  for (int i = 0; i < 3; ++i)
-    for (int c = 0; c < W; ++c)
-      A.r[i][c] += s * B.r[i][c];
-}
-
-// A += s M B
-template <int W>
-inline void add_product(Rows<W>& A, double s, const M3& M, const Rows<W>& B) {
-  for (int i = 0; i < 3; ++i) {
-    const double x = s * M.a[3 * i], y = s * M.a[3 * i + 1], z = s * M.a[3 * i + 2];
-    for (int c = 0; c < W; ++c)
-      A.r[i][c] += x * B.r[0][c] + y * B.r[1][c] + z * B.r[2][c];
-  }
-}
-
-// A += a × B
-template <int W>
-inline void add_cross(Rows<W>& A, V3 a, const Rows<W>& B) {
-  for (int c = 0; c < W; ++c) {
-    A.r[0][c] += a.y * B.r[2][c] - a.z * B.r[1][c];
-    A.r[1][c] += a.z * B.r[0][c] - a.x * B.r[2][c];
-    A.r[2][c] += a.x * B.r[1][c] - a.y * B.r[0][c];
-  }
-}
-
-// adds a 3×3 block into columns first .. first + 2
-template <int W>
-inline void add_block(Rows<W>& A, int first, double s, const M3& M) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      A.r[i][first + j] += s * M.a[3 * i + j];
-}
-
-// diag(C) R^T: from a world wrench to section strains
-inline M3 compliance_of_axes(const M3& R, const double* C) {
-  M3 CRt = transpose(R);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      CRt.a[3 * i + j] *= C[i];
-  return CRt;
-}
-
-// Gauss-Jordan with row pivoting on an LC × W array whose first LC columns are the matrix. Fixed
-// loops over whole rows, so that they vectorise.
-template <int LC, int W>
-bool eliminate(double (*A)[W]) {
-  for (int k = 0; k < LC; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < LC; ++i)
-      if (fabs(A[i][k]) > fabs(A[pivot][k])) pivot = i;
-    if (!(fabs(A[pivot][k]) > 1e-300)) return false;
-    if (pivot != k)
-      for (int c = 0; c < W; ++c) {
-        const double t = A[k][c];
-        A[k][c] = A[pivot][c];
-        A[pivot][c] = t;
-      }
-    const double s = 1 / A[k][k];
-    for (int c = 0; c < W; ++c)
-      A[k][c] *= s;
-    for (int i = 0; i < LC; ++i) {
-      if (i == k) continue;
-      const double f = A[i][k];
-      for (int c = 0; c < W; ++c)
-        A[i][c] -= f * A[k][c];
-    }
-  }
-  return true;
 }
 
 // All sensitivities of one cell, columns: lifted unknowns first, then the columns of Y.
@@ -273,18 +195,32 @@ struct Linearization {
     }
   }
 
+  // rows += A du with du = J_r dw_j + D dOmega
+  void add_curvature(Rows<W>& rows, const CellModel& M, int j, const M3& A, const M3& D) const {
+    add_block(rows, 3 * j, 1.0, A * J_r[j]);
+    const M3 AD = A * D;
+    for (int k = 0; k < S; ++k)
+      if (M.table->a[j][k] != 0) add_block(rows, 3 * k, M.h * M.table->a[j][k], AD);
+  }
+
   void laws(const CellModel& M, const CellStage* st) {
     for (int j = 0; j < S; ++j) {
       const M3 R = load_matrix(st[j].R);
       // (5)
       Rows<W> rows;
       set_zero(rows);
-      add_block(rows, 3 * j, 1.0, J_r[j]);
       const V3 Omega = load(st[j].Omega);
       const M3 D =
           right_jacobian_derivative(Omega, load(st[j].w), rotation_coefficients(dot(Omega, Omega)));
-      for (int k = 0; k < S; ++k)
-        if (M.table->a[j][k] != 0) add_block(rows, 3 * k, M.h * M.table->a[j][k], D);
+      if constexpr (law == CellLaw::kTendons) {
+        const TendonSection& tendons = M.tendons[j];
+        add_curvature(rows, M, j, softened(M.C_bt, load_matrix(tendons.moment_u), 1), D);
+        add_block(rows, 3 * S + 3 * j, 1.0, softened(M.C_bt, load_matrix(tendons.moment_v), 0));
+      } else {
+        add_block(rows, 3 * j, 1.0, J_r[j]);
+        for (int k = 0; k < S; ++k)
+          if (M.table->a[j][k] != 0) add_block(rows, 3 * k, M.h * M.table->a[j][k], D);
+      }
       Rows<W> moved = m0;
       for (int k = 0; k < S; ++k)
         if (M.table->a[j][k] != 0) add_scaled(moved, M.h * M.table->a[j][k], m_s[k]);
@@ -294,7 +230,14 @@ struct Linearization {
       // (6)
       if constexpr (lifts_stretch(law)) {
         set_zero(rows);
-        add_block(rows, 3 * S + 3 * j, 1.0, identity());
+        if constexpr (law == CellLaw::kTendons) {
+          const TendonSection& tendons = M.tendons[j];
+          add_curvature(rows, M, j, softened(M.C_se, transpose(load_matrix(tendons.moment_v)), 0),
+                        D);
+          add_block(rows, 3 * S + 3 * j, 1.0, softened(M.C_se, load_matrix(tendons.force_v), 1));
+        } else {
+          add_block(rows, 3 * S + 3 * j, 1.0, identity());
+        }
         moved = n[j];
         add_cross(moved, load(st[j].n), phi[j]);
         add_product(rows, -1.0, compliance_of_axes(R, M.C_se), moved);
@@ -385,6 +328,8 @@ const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kKirchhoffFluid>[stages - 1];
     case CellLaw::kExtensibleFluid:
       return kKernels<CellLaw::kExtensibleFluid>[stages - 1];
+    case CellLaw::kTendons:
+      return kKernels<CellLaw::kTendons>[stages - 1];
     case CellLaw::kExtensible:
       break;
   }

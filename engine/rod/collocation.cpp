@@ -36,6 +36,7 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   if (options_.rotary_inertia) rotation_track_.resize(3 * n);
   reference_rotations_.assign(points_.size(), Mat3::Identity());
   forcing_.length = length;
+  if (!options_.tendons.empty()) place_tendons();
   set_unloaded(X_WBase);
 }
 
@@ -186,6 +187,7 @@ Vec3 CollocationRod::compliance_se() const {
 void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   rates_ = rates;
   forcing_ = forcing;
+  if (tendons_) tendons_->set(forcing.tendons);
   assert(forcing_.loads.size() == station_of_.size());
   model_.C_bt = compliance_bt();
   model_.C_se = compliance_se();
@@ -308,11 +310,12 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
       points_[j].y = value(sites_[j]);
       points_[j].y_s = derivative(sites_[j]);
-      residual_.push_back(evaluate_point(model_, points_[j], fluid_at(j)));
+      residual_.push_back(evaluate_point(model_, points_[j], fluid_at(j), tendons_at(j)));
       add(VecX(rows_ * point_scale(j).cwiseProduct(residual_.back())));
     }
   }
   add(VecX(tip_.value(tip_state(), tip, loose) - tip_gap_));
+  if (finds_tensions()) add(tendons_->gaps());
   section_evaluations_ += static_cast<long>(points_.size());
   return r;
 }
@@ -338,6 +341,7 @@ std::string CollocationRod::row_name(int row) const {
     }
     row -= width() * pieces_[g].points;
   }
+  if (row >= d) return "length of a tendon of " + name_;
   return "tip of " + name_ + ", " + tip_.row_name(row);
 }
 

@@ -23,6 +23,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@
 #include "engine/rod/end_wrench.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/rod_model.h"
+#include "engine/rod/rod_tendons.h"
+#include "engine/rod/tendon_border.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -44,9 +47,10 @@ struct CollocationOptions {
   bool extension = false, shear = false;      ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;  ///< s of point loads
+  std::vector<Tendon> tendons;   ///< whose breaks are stations, too
 };
 
-class CollocationRod final : public RodModel {
+class CollocationRod final : public RodModel, private TensionedRod {
  public:
   /// @param plane of a planar scene: e1, e2 and the normal as columns, world. @param X_WBase where
   /// the unloaded rod begins; in a plane its axes may be turned about the tangent.
@@ -87,6 +91,11 @@ class CollocationRod final : public RodModel {
                const std::vector<double>& weights) override;
   void visit(Archive& archive) override;
   RodSample observe() const override;
+
+  std::vector<TendonSample> tendons() const override {
+    return tendons_ ? tendons_->observe() : std::vector<TendonSample>();
+  }
+
   RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
@@ -99,7 +108,9 @@ class CollocationRod final : public RodModel {
 
   int segments() const override { return static_cast<int>(pieces_.size()); }
 
-  int unknown_count() const override { return columns(); }
+  int unknown_count() const override {
+    return columns() + (tendons_ ? static_cast<int>(tendons_->unknowns()) : 0);
+  }
 
   long section_evaluations() const override { return section_evaluations_; }
 
@@ -119,6 +130,20 @@ class CollocationRod final : public RodModel {
   };
 
   void place_sites(const std::vector<double>& grid);
+  void place_tendons();
+  void describe_tendons(const Site& at, RodField& field) const;
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
+  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
+  void find_direction(const Vec6& z, const Vec6& zeta_A);
+  void add_tension(Eigen::Index unknown, bool add) override;
+  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+
+  bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
+
+  TendonSection* tendons_at(std::size_t point) const {
+    return tendons_ ? &tendons_->at(point) : nullptr;
+  }
+
   Site site(std::size_t piece, double s) const;
   Vec13 value(const Site& at) const;
   Vec13 derivative(const Site& at) const;
@@ -206,6 +231,11 @@ class CollocationRod final : public RodModel {
   Track rotation_track_{Track::Kind::kRotation};
   std::vector<Mat3> reference_rotations_;  ///< of the points, at the start of the step
   long section_evaluations_ = 0;
+
+  std::unique_ptr<RodTendons> tendons_;  ///< sections: points
+  TendonBorder border_;
+  VecX tension_direction_;
+  std::vector<Vec13> kept_residual_;
 };
 
 }  // namespace cprsim

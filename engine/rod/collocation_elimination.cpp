@@ -79,7 +79,7 @@ void CollocationRod::assemble_points(std::size_t piece, int row) {
   Mat13 by_y, by_y_s;
   for (int i = 0; i < pieces_[piece].points; ++i, row += width()) {
     const auto j = static_cast<std::size_t>(pieces_[piece].first_point + i);
-    linearize_point(model_, points_[j], by_y, by_y_s, fluid_at(j));
+    linearize_point(model_, points_[j], by_y, by_y_s, fluid_at(j), tendons_at(j));
     const BasisValues& b = sites_[j].basis;
     for (int k = 0; k <= options_.degree; ++k)
       if (b.value[k] != 0 || b.slope[k] != 0)
@@ -132,6 +132,11 @@ void CollocationRod::assemble(const Port& base) {
 
 // d rows remain on the last control point's 2d unknowns (phi, dp, dn, dm).
 bool CollocationRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
+                          : linearize_given(base, tip, out);
+}
+
+bool CollocationRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
   const Eigen::Index d = space_.freedoms();
   base_moves_ = base_.held() && base.moves;
   assemble(base);
@@ -177,6 +182,18 @@ Vec6 CollocationRod::wrench_on_tip(const Port& tip) const {
 }
 
 void CollocationRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
+  if (!finds_tensions()) {
+    find_direction(z, zeta_A);
+    return;
+  }
+  const VecX all = border_.direction(z, zeta_A);
+  direction_.resize(control_.size());
+  for (std::size_t k = 0; k < control_.size(); ++k)
+    direction_[k] = all.segment<13>(13 * static_cast<Eigen::Index>(k));
+  tension_direction_ = all.tail(tendons_->unknowns());
+}
+
+void CollocationRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
   const Eigen::Index d = space_.freedoms();
   VecX all(2 * d + 1);
   all << z.head(d), zeta_A.head(d), 1;
@@ -189,10 +206,12 @@ void CollocationRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
 }
 
 void CollocationRod::keep() {
+  if (finds_tensions()) tendons_->keep();
   kept_ = control_;
 }
 
 void CollocationRod::move(double alpha) {
+  if (finds_tensions()) tendons_->move(alpha, tension_direction_);
   for (std::size_t k = 0; k < control_.size(); ++k) {
     const Vec13 d = alpha * direction_[k];
     control_[k].head<4>() =

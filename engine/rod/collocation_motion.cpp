@@ -144,7 +144,10 @@ void CollocationRod::start_tracks_moving() {
     if (!options_.damping) continue;
     linearize_point(rigid, point, by_y, by_y_s);
     track_.v.segment<3>(strain) = (by_y * y + by_y_s * y_s).segment<3>(kQ + 1);
-    if (extensible_)
+    if (extensible_ && tendons_)  // whose law does not say what v is
+      track_.v.segment<3>(strain + 3 * n) =
+          point.R.transpose() * (y_s.segment<3>(kP) + point.y_s.segment<3>(kP).cross(phi));
+    else if (extensible_)
       track_.v.segment<3>(strain + 3 * n) =
           model_.C_se.cwiseProduct(point.R.transpose() * (y.segment<3>(kN) + point.n().cross(phi)));
   }

@@ -14,6 +14,10 @@ RodModel::Unknowns CollocationRod::unknowns() const {
   u.values.resize(13 * static_cast<Eigen::Index>(control_.size()));
   for (std::size_t k = 0; k < control_.size(); ++k)
     u.values.segment<13>(13 * static_cast<Eigen::Index>(k)) = control_[k];
+  if (finds_tensions()) {
+    u.values.conservativeResize(u.values.size() + tendons_->unknowns());
+    u.values.tail(tendons_->unknowns()) = tendons_->values();
+  }
   for (const Site& node : nodes_)
     u.nodes.push_back(state_of(value(node)));
   return u;
@@ -22,6 +26,7 @@ RodModel::Unknowns CollocationRod::unknowns() const {
 void CollocationRod::set_unknowns(const Unknowns& u) {
   for (std::size_t k = 0; k < control_.size(); ++k)
     control_[k] = u.values.segment<13>(13 * static_cast<Eigen::Index>(k));
+  if (finds_tensions()) tendons_->set_values(u.values.tail(tendons_->unknowns()));
 }
 
 /// What a plane leaves of an increment of the fields (q, p, n, m) at q.
@@ -47,6 +52,7 @@ void CollocationRod::predict(const std::vector<const Unknowns*>& past,
     const Vec13 next = sum.values.segment<13>(13 * static_cast<Eigen::Index>(k));
     control_[k] += left_by_plane(next - control_[k], Vec4(control_[k].head<4>()));
   }
+  if (finds_tensions()) tendons_->set_values(sum.values.tail(tendons_->unknowns()));
   // quaternions add up to another length
   const double length = control_.front().head<4>().norm();
   for (Vec13& control : control_)
@@ -61,6 +67,7 @@ void CollocationRod::visit(Archive& archive) {
   for (Track* track : tracks())
     track->visit(archive);
   archive.doubles(reference_rotations_);
+  if (tendons_) tendons_->visit(archive);
 }
 
 RodSample CollocationRod::observe() const {
@@ -102,6 +109,7 @@ RodField CollocationRod::field() const {
       const Vec13 y = value(at);
       f.points.push_back({rotation_of(Vec4(y.head<4>())), derivative(at).segment<3>(kP),
                           y.segment<3>(kN), y.segment<3>(kM)});
+      if (tendons_) describe_tendons(at, f);
     }
   }
   f.base = base_state();

@@ -6,6 +6,7 @@
 #include "engine/math/so3.h"
 #include "engine/section/fluid.h"
 #include "engine/section/rotary.h"
+#include "engine/section/tendon_law.h"
 
 namespace cprsim {
 namespace {
@@ -70,18 +71,25 @@ Eigen::Matrix4d quaternion_by_increment(const Vec4& q) {
   return M;
 }
 
-Vec13 evaluate_point(const PointModel& model, CollocationPoint& point, FluidSection* fluid) {
+Vec13 evaluate_point(const PointModel& model, CollocationPoint& point, FluidSection* fluid,
+                     TendonSection* tendons) {
   const Vec4 q = point.y.head<4>(), q_s = point.y_s.head<4>();
   const Vec3 p_s = point.y_s.segment<3>(kP);
   point.R = rotation_of(q);
   point.u = 2 / q.squaredNorm() * (vector_of_conjugate_product(q) * q_s);
-  point.v = point.v0 + model.C_se.cwiseProduct(point.R.transpose() * point.n());
+  Vec3 own_m = point.R.transpose() * point.m(), own_n = point.R.transpose() * point.n();
+  if (tendons) {
+    const Vec3 v = point.R.transpose() * p_s;
+    evaluate_tendons(*tendons, {point.u.x(), point.u.y(), point.u.z()}, {v.x(), v.y(), v.z()});
+    own_m -= Eigen::Map<const Vec3>(tendons->moment);
+    own_n -= Eigen::Map<const Vec3>(tendons->force);
+  }
+  point.v = point.v0 + model.C_se.cwiseProduct(own_n);
   Vec13 r;
-  r[kQ] = q.dot(q_s);  // (1)
-  r.segment<3>(kQ + 1) =
-      point.u - point.u0 - model.C_bt.cwiseProduct(point.R.transpose() * point.m());  // (2)
-  r.segment<3>(kP) = p_s - point.R * point.v;                                         // (3)
-  r.segment<3>(kN) = point.y_s.segment<3>(kN) - model.k * point.p() - point.b;        // (4)
+  r[kQ] = q.dot(q_s);                                                           // (1)
+  r.segment<3>(kQ + 1) = point.u - point.u0 - model.C_bt.cwiseProduct(own_m);   // (2)
+  r.segment<3>(kP) = p_s - point.R * point.v;                                   // (3)
+  r.segment<3>(kN) = point.y_s.segment<3>(kN) - model.k * point.p() - point.b;  // (4)
   if (fluid) {
     evaluate_fluid(model.c_v, model.c_w, load(point.y.data() + kP), load(point.R.col(2).data()),
                    *fluid);
@@ -97,7 +105,7 @@ Vec13 evaluate_point(const PointModel& model, CollocationPoint& point, FluidSect
 }
 
 void linearize_point(const PointModel& model, const CollocationPoint& point, Mat13& by_y,
-                     Mat13& by_y_s, const FluidSection* fluid) {
+                     Mat13& by_y_s, const FluidSection* fluid, const TendonSection* tendons) {
   by_y.setZero();
   by_y_s.setZero();
   const Vec4 q = point.y.head<4>(), q_s = point.y_s.head<4>();
@@ -132,6 +140,22 @@ void linearize_point(const PointModel& model, const CollocationPoint& point, Mat
   by_y.block<3, 3>(kM, kN) = cprsim::hat(p_s);
   by_y_s.block<3, 3>(kM, kP) = -cprsim::hat(n);
   by_y_s.block<3, 3>(kM, kM).setIdentity();
+  if (tendons) {
+    // + C_bt dLambda_m in (2), + R C_se dLambda_n in (3), with du = by_q dq + ... and
+    // dv = R^T (dp_s + p_s × phi)
+    const Mat3 m_u = Eigen::Map<const RowMatrix>(tendons->moment_u),
+               m_v = Eigen::Map<const RowMatrix>(tendons->moment_v),
+               n_v = Eigen::Map<const RowMatrix>(tendons->force_v);
+    const Mat3x4 u_by_q_s = 2 / q.squaredNorm() * vector_of_conjugate_product(q),
+                 v_by_q = point.R.transpose() * cprsim::hat(p_s) * G;
+    const Mat3 soft = model.C_bt.asDiagonal(), turned = point.R * model.C_se.asDiagonal();
+    by_y.block<3, 4>(kQ + 1, kQ) += soft * (m_u * by_q + m_v * v_by_q);
+    by_y_s.block<3, 4>(kQ + 1, kQ) += soft * m_u * u_by_q_s;
+    by_y_s.block<3, 3>(kQ + 1, kP) += soft * m_v * point.R.transpose();
+    by_y.block<3, 4>(kP, kQ) += turned * (m_v.transpose() * by_q + n_v * v_by_q);
+    by_y_s.block<3, 4>(kP, kQ) += turned * m_v.transpose() * u_by_q_s;
+    by_y_s.block<3, 3>(kP, kP) += turned * n_v * point.R.transpose();
+  }
   if (model.rotary)
     by_y.block<3, 4>(kM, kQ) = -Eigen::Map<const RowMatrix>(point.spin.torque_phi) * G;
 }

@@ -7,7 +7,9 @@
 //   p_s = R v,  v = v0 + C_se R^T n              (3)   shear and stretch law
 //   n_s = k p + b + g                            (4)
 //   m_s = -p_s × n + t(R)                        (5)
-// where g is a fluid's force (engine/section/fluid.h). No row divides by a stiffness; a rigid mode
+// where g is a fluid's force (engine/section/fluid.h). With tendons n and m are those of rod and
+// tendons together; in (2), (3) the rod's own part is less Lambda_m(u, v), Lambda_n(u, v) of
+// engine/section/tendon_law.h, there with v = R^T p_s. No row divides by a stiffness; a rigid mode
 // is a zero of C_bt, C_se. Everything but (1) is unchanged by q -> a q, and a constant left factor
 // of q turns the frame: rows (2)-(5) turn with it. Source: Weeger, Yeung, Dunn, CMAME 316 (2017)
 // 100-122, whose mixed rows these are; that (2), (3) are as many as (4), (5) is explained in
@@ -16,6 +18,7 @@
 
 #include "engine/math/types.h"
 #include "engine/section/fluid_section.h"
+#include "engine/section/tendon_section.h"
 
 namespace cprsim {
 
@@ -77,11 +80,13 @@ Eigen::Matrix<double, 3, 4> turn_by_quaternion(const Vec4& q);
 Eigen::Matrix4d quaternion_by_increment(const Vec4& q);
 
 /// Reads y, y_s and the inputs, fills the rest. @return left minus right sides of (1) to (5).
+/// @param fluid, tendons at this point, evaluated, too; null without any
 Vec13 evaluate_point(const PointModel& model, CollocationPoint& point,
-                     FluidSection* fluid = nullptr);
+                     FluidSection* fluid = nullptr, TendonSection* tendons = nullptr);
 
 /// Derivatives of these rows by y and y_s, after evaluate_point().
 void linearize_point(const PointModel& model, const CollocationPoint& point, Mat13& by_y,
-                     Mat13& by_y_s, const FluidSection* fluid = nullptr);
+                     Mat13& by_y_s, const FluidSection* fluid = nullptr,
+                     const TendonSection* tendons = nullptr);
 
 }  // namespace cprsim

@@ -26,9 +26,17 @@ struct RodField {
   NodeState base{}, tip{};         ///< ends, before a load on the base and after one on the tip
   Vec3 K_bt = Vec3::Zero();        ///< bending, bending, torsion, N m²
   Vec3 K_se = Vec3::Zero();        ///< shear, shear, extension, N; 0 where the strain is not free
+  std::vector<Mat6> tendons;       ///< stiffness (u, v) of tendons at the points, section axes
+  std::vector<MatX> locked;        ///< 6 × n there: stretch of tendons of given length by (u, v)
   double rhoA = 0;
   double added_mass = 0;     ///< of a fluid, across the tangent, kg/m
   Vec3 rhoJ = Vec3::Zero();  ///< whether or not the scene lists rotary inertia
+
+  /// At the next point.
+  void add_tendons(const Mat6& stiffness, const MatX& held) {
+    tendons.push_back(stiffness);
+    locked.push_back(held);
+  }
 };
 
 /// The part that a cross-section decides; a strain that is not free has no stiffness here.

@@ -23,6 +23,7 @@ ShootingOptions shooting_options(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.stations = plan.stations;
+  o.tendons = plan.tendons;
   return o;
 }
 
@@ -71,6 +72,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.stations = plan.stations;
+  o.tendons = plan.tendons;
   if (!plan.plane)
     return std::make_unique<StrainRod>(spec.name, EndCondition(spec.base), EndCondition(spec.tip),
                                        plan.plane, plan.X_WBase, plan.section, plan.length, o);
@@ -91,6 +93,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.stations = plan.stations;
+  o.tendons = plan.tendons;
   if (!plan.plane)
     return std::make_unique<CollocationRod>(spec.name, EndCondition(spec.base),
                                             EndCondition(spec.tip), plan.plane, plan.X_WBase,

@@ -12,6 +12,7 @@
 #include "engine/model/solver_spec.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/section.h"
+#include "engine/section/tendon.h"
 
 namespace cprsim {
 
@@ -24,7 +25,8 @@ struct RodPlan {
   double length = 0;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  std::vector<double> stations;        ///< s / L of point loads
+  std::vector<double> stations;  ///< s / L of point loads, then of breaks of tendons
+  std::vector<Tendon> tendons;
   const SolverSpec* solver = nullptr;  ///< resolution, accuracy
 };
 

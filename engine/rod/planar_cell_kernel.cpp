@@ -199,6 +199,7 @@ const PlanarKernel& CPRSIM_PLANAR_KERNEL(int stages, CellLaw law) {
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
     case CellLaw::kExtensibleFluid:
+    case CellLaw::kTendons:  // not in a plane
       break;
   }
   return kKernels<CellLaw::kExtensible>[stages - 1];

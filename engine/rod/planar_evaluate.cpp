@@ -125,6 +125,7 @@ PlanarEvaluate planar_evaluate(int stages, CellLaw law) {
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
     case CellLaw::kExtensibleFluid:
+    case CellLaw::kTendons:  // not in a plane
       break;
   }
   return kEvaluations<CellLaw::kExtensible>[stages - 1];

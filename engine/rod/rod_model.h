@@ -47,12 +47,19 @@ struct PointLoad {
   bool follower = false;
 };
 
+/// What a tendon's motor prescribes: a tension (N), or how much it has pulled in (m).
+struct TendonPull {
+  double value = 0;
+  bool displaces = false;
+};
+
 /// What acts on the rod during one solve.
 struct RodForcing {
   double length = 0;
-  Vec3 gravity = Vec3::Zero();   ///< m/s²
-  Vec3 wind = Vec3::Zero();      ///< m/s; read by a rod that has drag
-  std::vector<PointLoad> loads;  ///< in the order and at the s given at construction
+  Vec3 gravity = Vec3::Zero();      ///< m/s²
+  Vec3 wind = Vec3::Zero();         ///< m/s; read by a rod that has drag
+  std::vector<PointLoad> loads;     ///< in the order and at the s given at construction
+  std::vector<TendonPull> tendons;  ///< in the order given at construction
   double relaxation = 0;  ///< N s/m² over the pseudo time step: drag towards the marked positions
   double axial_softness =
       0;  ///< extra axial compliance in units of L²/EI: see Equations::set_softness
@@ -147,6 +154,10 @@ class RodModel {
   virtual void visit(Archive& archive) = 0;
 
   virtual RodSample observe() const = 0;
+
+  /// At the last evaluate(), in the order given at construction.
+  virtual std::vector<TendonSample> tendons() const { return {}; }
+
   /// The equilibrium at the last evaluate(), for stability and modes.
   virtual RodField field() const = 0;
   virtual RodEnergy energy() const = 0;

@@ -19,6 +19,12 @@ struct RodPoint {
   Vec3 rest_curvature{0, 0, 0};                     ///< u without load
 };
 
+/// A tendon at its motor: what it pulls with, and how much shorter its way along the rod is than
+/// along the unloaded one.
+struct TendonSample {
+  double tension = 0, displacement = 0;  ///< N, m
+};
+
 struct RodSample {
   double length = 0;
   double radius = 0;             ///< half the section's largest dimension, for drawing

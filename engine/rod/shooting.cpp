@@ -49,7 +49,14 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
   if (options_.rotary_inertia) rotation_track_.resize(3 * static_cast<Eigen::Index>(n));
   reference_rotations_.assign(9 * n, 0);
   forcing_.length = length;
+  if (!options_.tendons.empty()) place_tendons();
   set_unloaded(Pose{});
+}
+
+void ShootingRod::enter_cell(std::size_t cell) {
+  model_.h = cell_length(cell);
+  if (fluid_.acts()) model_.fluid = fluid_.at(cell * static_cast<std::size_t>(table_->stages));
+  if (tendons_) model_.tendons = &tendons_->at(cell * static_cast<std::size_t>(table_->stages));
 }
 
 // With constant u: R = R_0 exp(s u^), p = p_0 + R_0 (integral of exp) z, the integral being
@@ -117,6 +124,10 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
          : model_.k == 0 ? CellLaw::kExtensibleStatic
                          : CellLaw::kExtensible;
   if (fluid_.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
+  if (tendons_) {
+    law_ = CellLaw::kTendons;
+    tendons_->set(forcing.tendons);
+  }
   kernel_ = &cell_kernel(table_->stages, law_);
 
   const double EI = std::max(section_.K_bt.x(), section_.K_bt.y());
@@ -242,8 +253,7 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
       state = start;
     }
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
-      model_.h = cell_length(c);
-      if (fluid_.acts()) model_.fluid = fluid_.at(c * S);
+      enter_cell(c);
       NodeState end;
       if (touch_) open_contacts(c, state);
       kernel_->evaluate(model_, &stages_[c * S], state, end);
@@ -262,6 +272,9 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
   }
   add(tip_.value(state, tip, loose) - tip_gap_);
   if (touch_) contact_residual(r, row);
+  if (finds_tensions())
+    for (double gap : tendons_->gaps())
+      add_row(r, gap, row++);
   evaluated_ = r.finite;
   return r;
 }
@@ -281,11 +294,13 @@ std::string ShootingRod::row_name(int row) const {
   }
   row -= law;
   if (row < 6) return std::string("tip of ") + name_ + ", " + tip_.row_name(row);
+  if (row >= 6 + 3 * static_cast<int>(contact_count())) return "length of a tendon of " + name_;
   return "contact " + std::to_string((row - 6) / 3 + 1) + " of " + name_;
 }
 
 int ShootingRod::unknown_count() const {
   return 12 * segments() + 3 * static_cast<int>(contact_count()) +
+         (tendons_ ? static_cast<int>(tendons_->unknowns()) : 0) +
          static_cast<int>(stages_.size()) * (lifts_stretch(law_) ? 6 : 3);
 }
 

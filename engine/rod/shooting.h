@@ -26,6 +26,8 @@
 #include "engine/rod/contact.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/rod_model.h"
+#include "engine/rod/rod_tendons.h"
+#include "engine/rod/tendon_border.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -36,6 +38,7 @@ struct ShootingOptions {
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;  ///< s of point loads: grid nodes are placed there
+  std::vector<Tendon> tendons;   ///< whose breaks are stations, too
 };
 
 /// Largest growth of the arc-length problem over a rod of length L (design section 5): bending, and
@@ -43,7 +46,7 @@ struct ShootingOptions {
 double growth_exponent(const SectionProperties& section, const Vec3& K_bt, const Vec3& K_se,
                        double length, double k, double N);
 
-class ShootingRod final : public RodModel, public TouchingRod {
+class ShootingRod final : public RodModel, public TouchingRod, private TensionedRod {
  public:
   ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip,
               const SectionProperties& section, double length, const ShootingOptions& options);
@@ -81,6 +84,11 @@ class ShootingRod final : public RodModel, public TouchingRod {
                const std::vector<double>& weights) override;
   void visit(Archive& archive) override;
   RodSample observe() const override;
+
+  std::vector<TendonSample> tendons() const override {
+    return tendons_ ? tendons_->observe() : std::vector<TendonSample>();
+  }
+
   RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
@@ -141,6 +149,14 @@ class ShootingRod final : public RodModel, public TouchingRod {
   Vec3 compliance_bt() const;
   Vec3 compliance_se() const;
   void update_stage_inputs();
+  void place_tendons();
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
+  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
+  void find_direction(const Vec6& z, const Vec6& zeta_A);
+  void take_direction(const VecX& direction);
+  void add_tension(Eigen::Index unknown, bool add) override;
+  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+  void enter_cell(std::size_t cell);
 
   // contact
   const NodeState& cell_state(std::size_t cell) const;
@@ -284,6 +300,12 @@ class ShootingRod final : public RodModel, public TouchingRod {
   };
 
   std::unique_ptr<Touch> touch_;
+  std::unique_ptr<RodTendons> tendons_;  ///< sections: stages
+  TendonBorder border_;
+  VecX tension_direction_;
+  std::vector<CellStage> kept_stages_;  ///< while residuals are those of add_tension()
+
+  bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
 };
 
 }  // namespace cprsim

@@ -165,8 +165,7 @@ bool ShootingRod::sweep_columns(const Port& base) {
     if (g == 0) apply_load_columns(0, starts_.front(), Y);
     if (g == 0 && open) close_open_forces(0, 0, Y);
     for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
-      model_.h = cell_length(c);
-      if (fluid_.acts()) model_.fluid = fluid_.at(c * S);
+      enter_cell(c);
       if (contact_in(c)) open_contact_columns(c, Y);
       if (open) enter_open_forces(c, g, Y);
       if (!linearize(model_, &stages_[c * S], cell_state(c), nodes_[c + 1], Y,
@@ -184,6 +183,11 @@ bool ShootingRod::sweep_columns(const Port& base) {
 }
 
 bool ShootingRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
+                          : linearize_given(base, tip, out);
+}
+
+bool ShootingRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
   columns_ = base.moves || contact_count() > 0 ? kWide : kNarrow;
   if (!sweep_columns(base)) return false;
   close_tip(tip, zone_start_columns_.back().data(), out);
@@ -289,6 +293,13 @@ Vec6 ShootingRod::wrench_on_tip(const Port& tip) const {
 }
 
 void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
+  if (finds_tensions())
+    take_direction(border_.direction(z, zeta_A));
+  else
+    find_direction(z, zeta_A);
+}
+
+void ShootingRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto width = static_cast<std::size_t>(columns_);
   const int affine = affine_column(columns_);
@@ -334,6 +345,7 @@ void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
 }
 
 void ShootingRod::keep() {
+  if (finds_tensions()) tendons_->keep();
   kept_starts_ = starts_;
   if (touch_) {
     touch_->kept.clear();
@@ -348,6 +360,7 @@ void ShootingRod::keep() {
 }
 
 void ShootingRod::move(double alpha) {
+  if (finds_tensions()) tendons_->move(alpha, tension_direction_);
   for (std::size_t i = 0; i < contact_count(); ++i)
     touch_->contacts[i].force = touch_->kept[i] + alpha * touch_->direction[i];
   for (std::size_t g = 0; g < starts_.size(); ++g) {

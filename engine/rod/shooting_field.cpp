@@ -17,6 +17,8 @@ RodField ShootingRod::field() const {
     point.m = vec(stage.m);
     f.points.push_back(point);
   }
+  for (std::size_t j = 0; tendons_ && j < stages_.size(); ++j)
+    f.add_tendons(stiffness_of(tendons_->at(j)), tendons_->locked_at(j));
   f.base = starts_.front();
   f.tip = nodes_.back();
   describe_section(f, section_, options_.shear, options_.extension);

@@ -193,6 +193,10 @@ RodModel::Unknowns ShootingRod::unknowns() const {
     u.values.segment<3>(static_cast<Eigen::Index>(6 * j)) = vec(stages_[j].w);
     u.values.segment<3>(static_cast<Eigen::Index>(6 * j + 3)) = vec(stages_[j].v);
   }
+  if (finds_tensions()) {
+    u.values.conservativeResize(u.values.size() + tendons_->unknowns());
+    u.values.tail(tendons_->unknowns()) = tendons_->values();
+  }
   u.starts = starts_;
   u.nodes = nodes_;
   if (touch_) u.contacts = touch_->contacts;
@@ -205,6 +209,7 @@ void ShootingRod::set_unknowns(const Unknowns& u) {
     std::copy_n(u.values.data() + 6 * j, 3, stages_[j].w);
     std::copy_n(u.values.data() + 6 * j + 3, 3, stages_[j].v);
   }
+  if (finds_tensions()) tendons_->set_values(u.values.tail(tendons_->unknowns()));
   if (u.starts.size() == starts_.size()) {
     starts_ = u.starts;
     return;
@@ -258,6 +263,7 @@ void ShootingRod::visit(Archive& archive) {
   for (Track* track : tracks())
     track->visit(archive);
   archive.doubles(reference_rotations_);
+  if (tendons_) tendons_->visit(archive);
 }
 
 RodSample ShootingRod::observe() const {

@@ -56,7 +56,19 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   for (VecX* gap : {&tip_gap_, &base_gap_, &tip_gap_start_, &base_gap_start_})
     gap->setZero(space_.freedoms());
   forcing_.length = length;
+  if (!options_.tendons.empty()) place_tendons();
   set_unloaded(X_WBase);
+}
+
+void StrainRod::place_tendons() {
+  std::vector<AskedSection> sections;
+  for (std::size_t e = 0; e < elements(); ++e)
+    for (Eigen::Index i = 0; i < rule_.points(); ++i) {
+      const double s = grid_[e] + (grid_[e + 1] - grid_[e]) * rule_.gauss.points[i];
+      sections.push_back({s, s, (grid_[e + 1] - grid_[e]) * rule_.gauss.weights[i]});
+    }
+  tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
+                                          section_.u_rest, section_.K_bt.head<2>().maxCoeff());
 }
 
 // In a plane a section bends about its axis along the normal, which is a principal one or all are
@@ -120,6 +132,7 @@ double StrainRod::compliance(const StrainMode& mode) const {
 void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   rates_ = rates;
   forcing_ = forcing;
+  if (tendons_) tendons_->set(forcing.tendons);
   assert(forcing_.loads.size() == load_at_.size());
   k_ = section_.rhoA * rates.c_v * rates.c_w + forcing.relaxation;
   turning_ = options_.rotary_inertia && rates.dynamic();
@@ -228,16 +241,29 @@ Vec3 StrainRod::fluid_force(std::size_t point) {
   return Eigen::Map<const Vec3>(fluid_.at(point)->force);
 }
 
+/// Moment or force that the rod itself carries at a point, section axes.
+Vec3 StrainRod::own_wrench(const StrainMode& mode, std::size_t at) const {
+  const StrainPoint& point = points_[at];
+  Vec3 own = point.R.transpose() * (mode.turns ? point.m : point.n);
+  if (tendons_) {
+    const TendonSection& tendons = tendons_->at(at);
+    own -= Eigen::Map<const Vec3>(mode.turns ? tendons.moment : tendons.force);
+  }
+  return own;
+}
+
 // (4)
 void StrainRod::project_law(std::size_t e) {
   const Eigen::Index G = rule_.points();
-  const StrainPoint* const point = &points_[e * static_cast<std::size_t>(G)];
+  const std::size_t first = e * static_cast<std::size_t>(G);
+  for (std::size_t j = first; tendons_ && j < first + static_cast<std::size_t>(G); ++j)
+    tendons_->evaluate(j, points_[j].u, points_[j].v);
   for (std::size_t f = 0; f < free_modes_.size(); ++f) {
     const auto a = static_cast<Eigen::Index>(free_modes_[f]);
     const StrainMode& mode = modes_[free_modes_[f]];
     VecX row = (q_[e].row(a) + q_0_[e].row(a)).transpose();
     for (Eigen::Index i = 0; i < G; ++i) {
-      const Vec3 Lambda = point[i].R.transpose() * (mode.turns ? point[i].m : point[i].n);
+      const Vec3 Lambda = own_wrench(mode, first + static_cast<std::size_t>(i));
       row -= compliance(mode) * rule_.gauss.weights[i] * mode.axis.dot(Lambda) * rule_.phi.col(i);
     }
     law_residual_.segment(first_unknown(e, f), rule_.functions()) = row / unit(mode);
@@ -328,6 +354,7 @@ RodResidual StrainRod::evaluate(const Port& base, const Port& tip) {
   section_evaluations_ += static_cast<long>(points_.size());
   add(law_residual_ / noise_);
   add(tip_.value(state, tip, loose) - tip_gap_);
+  if (finds_tensions()) add(tendons_->gaps());
   evaluated_ = r.finite;
   return r;
 }
@@ -336,6 +363,7 @@ std::string StrainRod::row_name(int row) const {
   const int d = static_cast<int>(space_.freedoms()), law = static_cast<int>(strain_unknowns());
   if (row < d) return "base of " + name_ + ", " + base_.row_name(row);
   row -= d;
+  if (row >= law + d) return "length of a tendon of " + name_;
   if (row >= law) return "tip of " + name_ + ", " + tip_.row_name(row - law);
   const int functions = static_cast<int>(rule_.functions());
   const int element = row / functions / static_cast<int>(free_modes_.size());

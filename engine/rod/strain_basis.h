@@ -15,19 +15,25 @@
 // derivatives and differs by the quadrature's error; positions are integrated in the world instead
 // of in SE(3), so that they and the forces use one rule.
 //
+// With tendons Lambda is the total wrench and the rod's part of it is Lambda less theirs
+// (engine/section/tendon_law.h), which is asked at the Gauss points.
+//
 // Unknowns: pose and wrench at the base, and q. Rows: the base's, (4), the tip's. A direction
 // solves them at once: elimination leaves d = 6 unknowns z (3 in a plane) and the d rows of
 // the tip (engine/rod/rod_model.h), whatever is stiff, free or singular. Elements begin and end at
 // point loads, where the strain is not smooth.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/rod/end_condition.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/rod_model.h"
+#include "engine/rod/rod_tendons.h"
 #include "engine/rod/strain_rule.h"
+#include "engine/rod/tendon_border.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -38,6 +44,7 @@ struct StrainOptions {
   bool extension = false, shear = false;
   bool rotary_inertia = false, damping = false, drag = false;
   std::vector<double> stations;  ///< s / L of point loads
+  std::vector<Tendon> tendons;   ///< whose breaks are stations, too
 };
 
 /// One column of B.
@@ -54,7 +61,7 @@ struct StrainPoint {
   Vec3 p, n, m, u, v, tau;
 };
 
-class StrainRod final : public RodModel {
+class StrainRod final : public RodModel, private TensionedRod {
  public:
   /// @param X_WBase where the unloaded rod begins; in a plane its axes may be turned about the
   /// tangent. @param plane of a planar scene: e1, e2 and the normal as columns, world.
@@ -92,6 +99,11 @@ class StrainRod final : public RodModel {
                const std::vector<double>& weights) override;
   void visit(Archive& archive) override;
   RodSample observe() const override;
+
+  std::vector<TendonSample> tendons() const override {
+    return tendons_ ? tendons_->observe() : std::vector<TendonSample>();
+  }
+
   RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
@@ -105,7 +117,8 @@ class StrainRod final : public RodModel {
   int segments() const override { return 1; }
 
   int unknown_count() const override {
-    return static_cast<int>(space_.state.cols() + strain_unknowns());
+    return static_cast<int>(space_.state.cols() + strain_unknowns()) +
+           (tendons_ ? static_cast<int>(tendons_->unknowns()) : 0);
   }
 
   long section_evaluations() const override { return section_evaluations_; }
@@ -156,6 +169,15 @@ class StrainRod final : public RodModel {
   Mat3 cross_gap(std::size_t element, std::size_t gap, Mat3 R);
   void evaluate_element(std::size_t element, NodeState& state);
   void project_law(std::size_t element);
+  void place_tendons();
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
+  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
+  void add_tension(Eigen::Index unknown, bool add) override;
+  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+
+  bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
+
+  Vec3 own_wrench(const StrainMode& mode, std::size_t point) const;
   void evaluate_rotary_inertia(std::size_t point);
   Vec3 fluid_force(std::size_t point);
   void apply_load(std::size_t node, NodeState& state) const;
@@ -167,6 +189,7 @@ class StrainRod final : public RodModel {
   void vary_gap(std::size_t element, std::size_t gap, Rows3& phi) const;
   void vary_load(std::size_t node, Rows12& y) const;
   void vary_law(std::size_t element, const std::vector<Rows3>& n, const std::vector<Rows3>& m);
+  void vary_tendons(std::size_t element);
   void sweep_columns();
   VecX state_units() const;
 
@@ -212,6 +235,10 @@ class StrainRod final : public RodModel {
 
   std::vector<Rotary> rotary_;  ///< empty without the effect
   bool turning_ = false;        ///< rotary inertia acts now
+
+  std::unique_ptr<RodTendons> tendons_;  ///< sections: points
+  TendonBorder border_;
+  VecX tension_direction_, kept_residual_;
 
   // linearisation: columns of x
   MatX tip_columns_, law_columns_;

@@ -114,6 +114,7 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
     integral(i, m_s, 1, m[i]);
   }
   vary_law(e, n, m);
+  if (tendons_) vary_tendons(e);
   y.topRows<3>() = phi;
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const double hw = h * rule_.gauss.weights[static_cast<Eigen::Index>(i)];
@@ -146,6 +147,30 @@ void StrainRod::vary_law(std::size_t e, const std::vector<Rows3>& n, const std::
   }
 }
 
+// What (4) has from tendons: + C ∫ Phi^T B^T dLambda_tendons, their stiffness on (du, dv) = B Phi
+// dq.
+void StrainRod::vary_tendons(std::size_t e) {
+  const Eigen::Index G = rule_.points(), functions = rule_.functions(),
+                     states = space_.state.cols();
+  const auto six = [](const StrainMode& mode) {
+    Vec6 axis = Vec6::Zero();
+    axis.segment<3>(mode.turns ? 0 : 3) = mode.axis;
+    return axis;
+  };
+  for (Eigen::Index i = 0; i < G; ++i) {
+    const Mat6 K =
+        stiffness_of(tendons_->at(e * static_cast<std::size_t>(G) + static_cast<std::size_t>(i)));
+    for (std::size_t f = 0; f < free_modes_.size(); ++f)
+      for (std::size_t g = 0; g < free_modes_.size(); ++g) {
+        const StrainMode &row = modes_[free_modes_[f]], &column = modes_[free_modes_[g]];
+        const double factor = compliance(row) / unit(row) * unit(column) * rule_.gauss.weights[i] *
+                              six(row).dot(K * six(column));
+        law_columns_.block(first_unknown(e, f), states + first_unknown(e, g), functions,
+                           functions) += factor * rule_.phi.col(i) * rule_.phi.col(i).transpose();
+      }
+  }
+}
+
 void StrainRod::sweep_columns() {
   const Eigen::Index states = space_.state.cols(), n = strain_unknowns();
   point_turns_.resize(points_.size());
@@ -165,6 +190,47 @@ void StrainRod::sweep_columns() {
 }
 
 bool StrainRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
+                          : linearize_given(base, tip, out);
+}
+
+void StrainRod::add_tension(Eigen::Index unknown, bool add) {
+  if (!add) {
+    law_residual_ = kept_residual_;
+    return;
+  }
+  kept_residual_ = law_residual_;
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    const std::size_t e = j / static_cast<std::size_t>(rule_.points());
+    const auto i = static_cast<Eigen::Index>(j % static_cast<std::size_t>(rule_.points()));
+    const Vec6 Lambda = tendons_->per_tension(unknown, j);
+    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+      const StrainMode& mode = modes_[free_modes_[f]];
+      const double along = mode.axis.dot(Lambda.segment<3>(mode.turns ? 0 : 3));
+      law_residual_.segment(first_unknown(e, f), rule_.functions()) +=
+          compliance(mode) * rule_.gauss.weights[i] / unit(mode) * along * rule_.phi.col(i);
+    }
+  }
+}
+
+std::vector<Vec6> StrainRod::strain_rates(const VecX& direction) const {
+  std::vector<Vec6> rates(points_.size(), Vec6::Zero());
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    const std::size_t e = j / static_cast<std::size_t>(rule_.points());
+    const auto i = static_cast<Eigen::Index>(j % static_cast<std::size_t>(rule_.points()));
+    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+      const StrainMode& mode = modes_[free_modes_[f]];
+      rates[j].segment<3>(mode.turns ? 0 : 3) +=
+          unit(mode) *
+          direction.segment(space_.state.cols() + first_unknown(e, f), rule_.functions())
+              .dot(rule_.phi.col(i)) *
+          mode.axis;
+    }
+  }
+  return rates;
+}
+
+bool StrainRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
   const Eigen::Index d = space_.freedoms(), n = strain_unknowns(), states = 2 * d;
   sweep_columns();
   // the base's rows and (4): A x + B [zeta_A; 1] = 0
@@ -195,17 +261,29 @@ Vec6 StrainRod::wrench_on_tip(const Port& tip) const {
 }
 
 void StrainRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
+  if (!finds_tensions()) {
+    direction_ = direction_given(z, zeta_A);
+    return;
+  }
+  const VecX all = border_.direction(z, zeta_A);
+  direction_ = all.head(all.size() - tendons_->unknowns());
+  tension_direction_ = all.tail(tendons_->unknowns());
+}
+
+VecX StrainRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
   const Eigen::Index d = space_.freedoms();
-  direction_ = general_.leftCols(d) * z.head(d) + general_.middleCols(d, d) * zeta_A.head(d) +
-               general_.col(2 * d);
+  return general_.leftCols(d) * z.head(d) + general_.middleCols(d, d) * zeta_A.head(d) +
+         general_.col(2 * d);
 }
 
 void StrainRod::keep() {
+  if (finds_tensions()) tendons_->keep();
   kept_start_ = start_;
   kept_q_ = q_;
 }
 
 void StrainRod::move(double alpha) {
+  if (finds_tensions()) tendons_->move(alpha, tension_direction_);
   const Eigen::Index states = space_.state.cols(), functions = rule_.functions();
   const Vec12 y = space_.state * state_units().cwiseProduct(alpha * direction_.head(states));
   Eigen::Map<RowMatrix>(start_.R) =

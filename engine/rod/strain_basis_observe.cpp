@@ -136,6 +136,10 @@ RodModel::Unknowns StrainRod::unknowns() const {
   u.values.resize(size * static_cast<Eigen::Index>(q_.size()));
   for (std::size_t e = 0; e < elements(); ++e)
     std::copy_n(q_[e].data(), size, u.values.data() + static_cast<Eigen::Index>(e) * size);
+  if (finds_tensions()) {
+    u.values.conservativeResize(u.values.size() + tendons_->unknowns());
+    u.values.tail(tendons_->unknowns()) = tendons_->values();
+  }
   return u;
 }
 
@@ -144,6 +148,7 @@ void StrainRod::set_unknowns(const Unknowns& u) {
   const Eigen::Index size = q_[0].size();
   for (std::size_t e = 0; e < elements(); ++e)
     std::copy_n(u.values.data() + static_cast<Eigen::Index>(e) * size, size, q_[e].data());
+  if (finds_tensions()) tendons_->set_values(u.values.tail(tendons_->unknowns()));
 }
 
 void StrainRod::predict(const std::vector<const Unknowns*>& past,
@@ -187,6 +192,7 @@ void StrainRod::visit(Archive& archive) {
   fluid_.visit(archive);
   for (Track* track : tracks())
     track->visit(archive);
+  if (tendons_) tendons_->visit(archive);
 }
 
 RodSample StrainRod::observe() const {
@@ -253,6 +259,13 @@ RodField StrainRod::field() const {
           point.m += weights[i] * points_[first + static_cast<std::size_t>(i)].m;
         }
         f.points.push_back(point);
+        if (!tendons_) continue;
+        const double s = grid_[e] + (grid_[e + 1] - grid_[e]) * x;
+        const VecX phi = legendre(x, rule_.order);
+        MatX held;
+        const Mat6 stiffness =
+            tendons_->stiffness(s, s, strain(e, phi, true), strain(e, phi, false), &held);
+        f.add_tendons(stiffness, held);
       }
     }
   f.base = start_;

@@ -38,7 +38,8 @@ void make_continuous(ProfileTerm& term, double duration) {
 Scene with_continuous_drives(Scene scene) {
   if (scene.simulation.mode != Mode::kDynamic) return scene;
   for (DriveSpec& drive : scene.drives) {
-    if (drive.quantity != DriveQuantity::kPosition && drive.quantity != DriveQuantity::kLength)
+    if (drive.quantity != DriveQuantity::kPosition && drive.quantity != DriveQuantity::kLength &&
+        drive.quantity != DriveQuantity::kDisplacement)
       continue;
     for (ProfileTerm& term : drive.profile.terms)
       make_continuous(term, scene.max_step_size);

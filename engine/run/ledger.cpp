@@ -112,6 +112,31 @@ void EnergyLedger::begin_step(double t) {
     q_before_.push_back(joint.q);
   }
   friction_energy_before_ = friction_energy();
+  tendons_before_ = tendons_now(t, false);
+}
+
+// A tension is what its drive says from t on, not what the last solve has seen.
+std::vector<std::vector<TendonSample>> EnergyLedger::tendons_now(double t, bool before) const {
+  std::vector<std::vector<TendonSample>> now;
+  for (const RobotRod& rod : robot_.rods) {
+    if (rod.tendons.empty()) continue;
+    now.push_back(rod.model->tendons());
+    for (std::size_t k = 0; k < rod.tendons.size(); ++k)
+      if (const TendonPull pull = pull_at(rod.tendons[k], t, before); !pull.displaces)
+        now.back()[k].tension = pull.value;
+  }
+  return now;
+}
+
+double EnergyLedger::tendon_work(double t) const {
+  const std::vector<std::vector<TendonSample>> now = tendons_now(t, true);
+  double work = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    for (std::size_t k = 0; k < now[i].size(); ++k) {
+      const TendonSample &a = tendons_before_[i][k], &b = now[i][k];
+      work += 0.5 * (a.tension + b.tension) * (b.displacement - a.displacement);
+    }
+  return work;
 }
 
 double EnergyLedger::joint_effort(const JointDrive& drive, double t, bool before) const {
@@ -148,7 +173,7 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work, 
     if (!a.moment.isZero() || !b.moment.isZero())
       sample_.work += 0.5 * (a.moment + b.moment).dot(log_so3(b.rotation * a.rotation.transpose()));
   }
-  sample_.work += drive_work;
+  sample_.work += drive_work + tendon_work(t);
   sample_.dissipated += damping_loss;
   // what friction takes, less what its elastic range still holds
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {

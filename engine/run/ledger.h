@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where energy comes from and goes: kinetic, elastic and potential energy of everything, the work
-// of loads (trapezoidal in the displacement, which is exact for dead loads) and of drives (their
-// power, by the time scheme's own quadrature), and what damping has taken out.
+// of loads and tendons (trapezoidal in the displacement, which is exact for dead loads and constant
+// tensions) and of the other drives (their power, by the time scheme's own quadrature), and what
+// damping has taken out.
 #pragma once
 
 #include <vector>
@@ -59,7 +60,11 @@ class EnergyLedger {
   EnergySample sample_;
   double joint_effort(const JointDrive& drive, double t, bool before) const;
 
-  std::vector<Vec3> friction_before_, q_before_;  ///< of joints
+  std::vector<std::vector<TendonSample>> tendons_now(double t, bool before) const;
+  double tendon_work(double t) const;
+
+  std::vector<Vec3> friction_before_, q_before_;           ///< of joints
+  std::vector<std::vector<TendonSample>> tendons_before_;  ///< of rods
   double begun_ = 0;
   double friction_energy_before_ = 0;
   double start_ = 0;

@@ -36,6 +36,13 @@ Snapshot take_snapshot(const Robot& robot, const FreeBodies* free_bodies, double
   }
   for (const RobotRod& rod : robot.rods)
     now.rods.push_back(rod.model->observe());
+  now.tendons.resize(robot.scene->tendons.size());
+  for (const RobotRod& rod : robot.rods) {
+    if (rod.tendons.empty()) continue;
+    const std::vector<TendonSample> samples = rod.model->tendons();
+    for (std::size_t k = 0; k < samples.size(); ++k)
+      now.tendons[static_cast<std::size_t>(rod.tendons[k].index)] = samples[k];
+  }
   if (free_bodies) now.contact = free_bodies->contacts();
   return now;
 }

@@ -258,6 +258,11 @@ Snapshot interpolate(const Snapshot& a, const Snapshot& b, double t) {
   for (std::size_t i = 0; i < b.rods.size(); ++i) {
     result.rods.push_back(rod_between(a.rods.at(i), b.rods[i], at));
   }
+  for (std::size_t i = 0; i < b.tendons.size(); ++i) {
+    const TendonSample &from = a.tendons.at(i), &to = b.tendons[i];
+    result.tendons.push_back(
+        {at(from.tension, to.tension), at(from.displacement, to.displacement)});
+  }
   result.energy = energy_between(a.energy, b.energy, at);
   // counts belong to the step that ends at b
   result.solver = b.solver;
@@ -294,6 +299,10 @@ double evaluate(const Channel& channel, const Scene& scene, const Snapshot& snap
     case ChannelEntity::kRodPoint:
     case ChannelEntity::kRod:
       return value_of(channel, snapshot.rods.at(index));
+    case ChannelEntity::kTendon: {
+      const TendonSample& tendon = snapshot.tendons.at(index);
+      return channel.quantity == Quantity::kTension ? tendon.tension : tendon.displacement;
+    }
     case ChannelEntity::kEnergy:
       return value_of(channel, snapshot.energy);
     case ChannelEntity::kSolver:

@@ -49,6 +49,7 @@ struct Snapshot {
   std::vector<BodySample> bodies;  ///< as Scene::bodies
   std::vector<JointSample> joints;
   std::vector<RodSample> rods;
+  std::vector<TendonSample> tendons;  ///< as Scene::tendons
   EnergySample energy;
   SolverSample solver;
   ContactSample contact;

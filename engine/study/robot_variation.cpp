@@ -86,8 +86,8 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
   add_reactions(base, K);
   add_reactions(tip, K);
   const MatX rows_base = holding_rows(base, rod.length), rows_tip = holding_rows(tip, rod.length);
-  MatX C(rows_base.rows() + rows_tip.rows(), n + 12);
-  C << rows_base, rows_tip;
+  MatX C(rows_base.rows() + rows_tip.rows() + own.held.rows(), n + 12);
+  C << rows_base, rows_tip, over_all(own.held) / rod.length;
   // lengths per unit: psi in 1/L, d in L
   VecX unit = VecX::Constant(n, 1);
   unit.segment<3>(3).setConstant(rod.length);

@@ -31,6 +31,15 @@ struct Motion {
   Rows3 phi, d;
 };
 
+/// Changes of (u, v) at a point by its coordinates.
+MatX strain_changes(const RodField& field, const Layout& layout, std::size_t point) {
+  MatX by_coordinates = MatX::Zero(6, layout.per_point);
+  by_coordinates.topLeftCorner<3, 3>() = field.points[point].R.transpose();
+  for (std::size_t e = 0; e < layout.strains.size(); ++e)
+    by_coordinates(3 + layout.strains[e], 3 + static_cast<Eigen::Index>(e)) = 1;
+  return by_coordinates;
+}
+
 }  // namespace
 
 MatX planar_motions(const RodField& field, const Vec3& normal) {
@@ -63,6 +72,7 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
   RodVariation out;
   out.K = MatX::Zero(n, n);
   out.M = MatX::Zero(n, n);
+  out.held = MatX::Zero(field.locked.empty() ? 0 : field.locked[0].cols(), n);
   out.nodes.resize(6 * static_cast<Eigen::Index>(field.cells.size() + 1), n);
   Motion node{Rows3::Zero(3, n), Rows3::Zero(3, n)};
   node.phi.leftCols<3>().setIdentity();
@@ -105,6 +115,13 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       for (std::size_t e = 0; e < layout.strains.size(); ++e) {
         const Eigen::Index i = psi + 3 + static_cast<Eigen::Index>(e);
         K(i, i) += 0.5 * w * field.K_se[layout.strains[e]];
+      }
+      if (!field.tendons.empty()) {
+        // tendons are one more law of the section
+        const MatX by = strain_changes(field, layout, at);
+        K.block(psi, psi, layout.per_point, layout.per_point) +=
+            0.5 * w * by.transpose() * field.tendons[at] * by;
+        out.held.middleCols(psi, layout.per_point) += w * field.locked[at].transpose() * by;
       }
       const Mat3 outer = point.tau * point.n.transpose();
       const Mat3 B = 0.5 * (outer + outer.transpose()) - point.n.dot(point.tau) * Mat3::Identity();

@@ -22,6 +22,7 @@ struct RodVariation {
   MatX M;      ///< x_t^T M x_t is twice the kinetic energy
   MatX base;   ///< 6 × n: (phi, d) at the base
   MatX tip;    ///< 6 × n
+  MatX held;   ///< rows that must vanish: changes of length of tendons whose length is given, m
   MatX nodes;  ///< 6 (cells + 1) × n: (phi, d) at the cells' ends, for shapes of modes
 
   Eigen::Index size() const { return K.rows(); }

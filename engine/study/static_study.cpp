@@ -23,7 +23,8 @@ Profile constant(double value) {
 }
 
 const char* unit_of(const Scene& scene, const DriveSpec& drive) {
-  if (drive.quantity == DriveQuantity::kLength) return "m";
+  if (drive.quantity == DriveQuantity::kTension) return "N";
+  if (drive.tendon >= 0 || drive.quantity == DriveQuantity::kLength) return "m";
   const bool length =
       slides(scene.joints[static_cast<std::size_t>(drive.joint)].kind, drive.freedom);
   if (drive.quantity == DriveQuantity::kEffort) return length ? "N" : "N m";
@@ -37,6 +38,9 @@ Parameter parameter_of(const Scene& scene, std::size_t index) {
   p.unit = unit_of(scene, drive);
   if (drive.quantity == DriveQuantity::kLength) {
     p.name = scene.rods[static_cast<std::size_t>(drive.rod)].name + ".length";
+  } else if (drive.tendon >= 0) {
+    p.name = scene.tendons[static_cast<std::size_t>(drive.tendon)].name +
+             (drive.quantity == DriveQuantity::kTension ? ".tension" : ".displacement");
   } else {
     p.name = scene.joints[static_cast<std::size_t>(drive.joint)].name +
              (drive.quantity == DriveQuantity::kEffort ? ".effort" : ".position");

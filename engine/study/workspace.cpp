@@ -71,6 +71,10 @@ std::vector<double> drive_efforts(const StaticStudy& study) {
     double effort = 0;
     if (drive.quantity == DriveQuantity::kEffort) {
       effort = drive.profile.evaluate(0).value;
+    } else if (drive.tendon >= 0) {
+      for (const RobotRod& rod : robot.rods)
+        for (std::size_t k = 0; k < rod.tendons.size(); ++k)
+          if (rod.tendons[k].index == drive.tendon) effort = rod.model->tendons()[k].tension;
     } else if (drive.quantity == DriveQuantity::kLength) {
       effort = robot.rods[static_cast<std::size_t>(drive.rod)].model->energy().feed_power;
     } else if (const int index = robot.joint_of_spec[static_cast<std::size_t>(drive.joint)];

@@ -237,6 +237,13 @@ void check_drives(Reading& r) {
         r.report.at(Severity::kError, "E508", drive.place, 13,
                     "the length of '" + scene.rods[at(drive.rod)].name + "' becomes " +
                         format_number(e.least) + " m at t = " + format_number(e.t_least) + " s");
+    } else if (drive.quantity == DriveQuantity::kTension) {
+      const Extremes e = extremes_of(drive.profile, scene.simulation.duration, false);
+      if (e.least < 0)
+        r.report.at(Severity::kError, "E508", drive.place, 13,
+                    "a tendon only pulls: the tension of '" + scene.tendons[at(drive.tendon)].name +
+                        "' becomes " + format_number(e.least) +
+                        " N at t = " + format_number(e.t_least) + " s");
     } else if (drive.joint >= 0) {
       check_driven_axis(r, drive);
       if (drive.quantity != DriveQuantity::kEffort) moved.insert({drive.joint, drive.freedom});

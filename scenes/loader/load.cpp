@@ -77,11 +77,13 @@ void read_world(Reading& reading, const Node& world) {
   read_bodies(reading, world);
   read_joints(reading, world);
   read_rods(reading, world);
+  read_tendons(reading);
   read_profiles(reading, world);
   read_actions(reading, world);
   read_targets(reading);
   read_views(reading, world);
   check_physics(reading);
+  check_tendons(reading);
   check_contact(reading);
   check_planar(reading, world);
   read_outputs(reading, world);

@@ -31,14 +31,30 @@ bool read_time_function(Reading& r, const Node& node, Profile& profile) {
   return true;
 }
 
+bool resolve_tendon(Reading& r, const Node& node, int scope, const Attribute& name,
+                    DriveSpec& drive) {
+  if (const auto found = find_tendon(r, scope, name.value)) {
+    drive.tendon = *found;
+    return true;
+  }
+  std::vector<std::string> names;
+  for (const TendonSpec& tendon : r.scene.tendons)
+    names.push_back(tendon.name);
+  r.report.bad_value("E404", node, name, "there is no tendon '" + name.value + "'",
+                     mean(nearest_name(name.value, names)));
+  return false;
+}
+
 bool resolve_driven(Reading& r, const Node& node, int scope, DriveSpec& drive) {
   const Attribute* joint = node.attribute("joint");
   const Attribute* rod = node.attribute("rod");
-  if (node.attribute("tendon")) return false;
-  if (!joint == !rod) {
-    r.report.error("E310", node, "a drive acts on a joint or on a rod: give one of the two");
+  const Attribute* tendon = node.attribute("tendon");
+  if (int{joint != nullptr} + int{rod != nullptr} + int{tendon != nullptr} != 1) {
+    r.report.error("E310", node,
+                   "a drive acts on a joint, on a rod or on a tendon: give one of the three");
     return false;
   }
+  if (tendon) return resolve_tendon(r, node, scope, *tendon, drive);
   const Attribute& target = joint ? *joint : *rod;
   const auto found = r.frames.find_outwards(scope, target.value);
   const FrameKind wanted = joint ? FrameKind::kJoint : FrameKind::kRod;
@@ -90,25 +106,33 @@ void resolve_axis(Reading& r, const Node& node, DriveSpec& drive) {
                        named + " has " + std::to_string(count) + (count > 1 ? " axes" : " axis"));
 }
 
-void read_drive(Reading& r, const Node& node, int scope, std::set<std::array<int, 3>>& driven) {
+void read_drive(Reading& r, const Node& node, int scope, std::set<std::array<int, 4>>& driven) {
   DriveSpec drive;
   drive.place = node.place;
   if (!resolve_driven(r, node, scope, drive)) return;
   resolve_axis(r, node, drive);
   const std::string_view quantity = node.value("quantity");
-  drive.quantity = quantity == "velocity" ? DriveQuantity::kVelocity
-                   : quantity == "effort" ? DriveQuantity::kEffort
-                   : quantity == "length" ? DriveQuantity::kLength
-                                          : DriveQuantity::kPosition;
-  if ((drive.quantity == DriveQuantity::kLength) != (drive.rod >= 0))
+  drive.quantity = quantity == "velocity"       ? DriveQuantity::kVelocity
+                   : quantity == "effort"       ? DriveQuantity::kEffort
+                   : quantity == "length"       ? DriveQuantity::kLength
+                   : quantity == "tension"      ? DriveQuantity::kTension
+                   : quantity == "displacement" ? DriveQuantity::kDisplacement
+                                                : DriveQuantity::kPosition;
+  const bool of_rod = drive.quantity == DriveQuantity::kLength,
+             of_tendon = drive.quantity == DriveQuantity::kTension ||
+                         drive.quantity == DriveQuantity::kDisplacement;
+  if (of_rod != (drive.rod >= 0) || of_tendon != (drive.tendon >= 0))
     r.report.bad_value("E310", node, *node.attribute("quantity"),
                        drive.rod >= 0 ? "a rod's drive has the quantity length"
-                                      : "a joint's drive has the quantity position, velocity or "
-                                        "effort");
-  if (!driven.insert({drive.joint, drive.freedom, drive.rod}).second)
-    r.report.error("E412", node,
-                   "a second drive of " + (drive.rod >= 0 ? r.scene.rods[at(drive.rod)].name
-                                                          : r.scene.joints[at(drive.joint)].name));
+                       : drive.tendon >= 0
+                           ? "a tendon's drive has the quantity tension or displacement"
+                           : "a joint's drive has the quantity position, velocity or effort");
+  if (!driven.insert({drive.joint, drive.freedom, drive.rod, drive.tendon}).second)
+    r.report.error(
+        "E412", node,
+        "a second drive of " + (drive.rod >= 0      ? r.scene.rods[at(drive.rod)].name
+                                : drive.tendon >= 0 ? r.scene.tendons[at(drive.tendon)].name
+                                                    : r.scene.joints[at(drive.joint)].name));
   bool mentioned = false;
   for (const auto& child : node.children)
     mentioned = mentioned || !child->foreign;
@@ -247,7 +271,7 @@ void read_velocities(Reading& r, const Node& world) {
 
 void read_actions(Reading& r, const Node& world) {
   const std::vector<bool> fixed = fixed_bodies(r.scene);
-  std::set<std::array<int, 3>> driven;
+  std::set<std::array<int, 4>> driven;
   for_each_scope(r, [&](int scope, const Node& node) {
     for (const Node* drive : node.all("cprsim:drive"))
       read_drive(r, *drive, scope, driven);

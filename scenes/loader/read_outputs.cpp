@@ -107,11 +107,6 @@ std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* 
   const std::string& pattern = attribute ? attribute->value : node.text;
   std::vector<Channel> channels = find_channels(r.scene, pattern);
   if (!channels.empty()) return channels;
-  const std::string quantity = pattern.substr(std::min(pattern.rfind('.'), pattern.size()));
-  if (quantity == ".tension" || quantity == ".displacement") {
-    r.report.error("E520", node, "channels of tendons are not available in this version");
-    return channels;
-  }
   if (pattern.substr(0, 8) == "contact(") {
     r.report.error("E520", node, "channels of single contacts are not available in this version",
                    "available: contact.count, contact.penetration, contact.force, "

@@ -43,6 +43,7 @@ void read_settings(Reading& reading, const Node& world);  // gravity, physics, e
 void read_bodies(Reading& reading, const Node& world);    // links
 void read_joints(Reading& reading, const Node& world);    // rigid joints
 void read_rods(Reading& reading, const Node& world);      // rods and their classes
+void read_tendons(Reading& reading);                      // after the rods
 void read_profiles(Reading& reading, const Node& world);
 void read_actions(Reading& reading, const Node& world);  // drives, loads, initial velocities
 void read_targets(Reading& reading);                     // after the drives
@@ -51,8 +52,13 @@ void read_outputs(Reading& reading, const Node& world);  // videos, records, exp
 void read_expect(Reading& reading, const Node& node);
 void read_sweep(Reading& reading, const Node& node, const Node& world);
 void check_physics(Reading& reading);                    // what only the whole scene can tell
+void check_tendons(Reading& reading);                    // that all are driven, and how
 void check_contact(Reading& reading);                    // what rods can touch
 void check_planar(Reading& reading, const Node& world);  // that nothing leaves the plane
+
+/// A tendon as seen from a scope, and from its enclosing ones unless only_here.
+std::optional<int> find_tendon(const Reading& reading, int scope, std::string_view name,
+                               bool only_here = false);
 
 /// Channels that an attribute (none: the element's text) names; an error if there is none.
 std::vector<Channel> channels_of(Reading& reading, const Node& node, const Attribute* attribute);

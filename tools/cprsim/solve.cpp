@@ -148,6 +148,7 @@ Solved solve(StaticStudy& study, const SolveWords& w, const std::vector<Paramete
 /// What a drive exerts: a joint's effort, or the tension with which a rod leaves its feed.
 double effort_of(const Scene& scene, const Snapshot& now, const Parameter& drive) {
   const DriveSpec& spec = scene.drives[static_cast<std::size_t>(drive.index)];
+  if (spec.tendon >= 0) return now.tendons[static_cast<std::size_t>(spec.tendon)].tension;
   if (spec.quantity != DriveQuantity::kLength)
     return now.joints[static_cast<std::size_t>(spec.joint)].effort[spec.freedom];
   const RodPoint& base = now.rods[static_cast<std::size_t>(spec.rod)].points.front();

@@ -34,11 +34,12 @@ int freedom_or_complain(const std::string& option, const std::string& name) {
 std::vector<Channel> numbers_named(const Scene& scene, const std::string& pattern) {
   std::vector<Channel> found;
   for (const std::string& each :
-       {pattern, pattern + ".length", pattern + ".position", pattern + ".effort"})
+       {pattern, pattern + ".length", pattern + ".position", pattern + ".effort",
+        pattern + ".tension", pattern + ".displacement"})
     for (const Channel& channel : find_channels(scene, each)) {
-      const bool fits = channel.quantity == Quantity::kLength ||
-                        channel.quantity == Quantity::kJointPosition ||
-                        channel.quantity == Quantity::kJointEffort;
+      const bool fits =
+          channel.quantity == Quantity::kLength || channel.quantity == Quantity::kJointPosition ||
+          channel.quantity == Quantity::kJointEffort || channel.entity == ChannelEntity::kTendon;
       if (fits) found.push_back(channel);
     }
   return found;
@@ -46,8 +47,11 @@ std::vector<Channel> numbers_named(const Scene& scene, const std::string& patter
 
 bool drives(const DriveSpec& drive, const Channel& channel) {
   if (channel.quantity == Quantity::kLength) return drive.rod == channel.index;
+  if (channel.entity == ChannelEntity::kTendon)
+    return drive.tendon == channel.index &&
+           (drive.quantity == DriveQuantity::kTension) == (channel.quantity == Quantity::kTension);
   const bool effort = drive.quantity == DriveQuantity::kEffort;
-  return drive.rod < 0 && drive.joint == channel.index &&
+  return drive.rod < 0 && drive.tendon < 0 && drive.joint == channel.index &&
          effort == (channel.quantity == Quantity::kJointEffort);
 }
 

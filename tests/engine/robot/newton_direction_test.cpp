@@ -229,6 +229,64 @@ DriveSpec joint_drive(int joint, DriveQuantity quantity, int freedom = 0) {
   return drive;
 }
 
+/// One of each way, all on the rod in the middle; one ends before the tip.
+Scene chain_with_tendons(EndJoint base) {
+  Scene scene = chain_of_rods(base, EndJoint::kRevolute);
+  for (int k = 0; k < 3; ++k) {
+    TendonSpec tendon;
+    tendon.name = "tendon_" + std::to_string(k);
+    tendon.rod = 1;
+    tendon.route = static_cast<TendonRoute>(k);
+    tendon.radius = 0.2 + 0.05 * k;
+    tendon.angle = 0.7 + k;
+    tendon.turns = 0.6;
+    tendon.points = {{0, 0.2, 0.1}, {0.4, -0.1, 0.15}, {1, 0, -0.2}};
+    tendon.termination = k == 1 ? 0.7 : 1;
+    scene.tendons.push_back(tendon);
+    DriveSpec drive;
+    drive.tendon = k;
+    drive.quantity = DriveQuantity::kTension;
+    drive.profile = constant_profile(0.8 + 0.4 * k);
+    scene.drives.push_back(drive);
+  }
+  return scene;
+}
+
+TEST(NewtonDirection, IsExactWithTendons) {
+  for (EndJoint base : {EndJoint::kFixed, EndJoint::kBall}) {
+    Scene scene = chain_with_tendons(base);
+    expect_exact(scene, {}, "statics");
+    expect_exact(scene, {Mode::kBackwardEuler}, "dynamics");
+    Setting setting;
+    setting.softness = 2e-2;
+    setting.relaxation = 2;
+    setting.fraction = 0.4;
+    expect_exact(scene, setting, "soft rods, drag, part of the tension");
+    scene.effects.set(Effect::kExtension, true);
+    expect_exact(scene, {}, "statics, extensible");
+    set_all_effects(scene);
+    expect_exact(scene, {}, "statics, all effects");
+    expect_exact(scene, {Mode::kBackwardEuler}, "dynamics, all effects");
+    expect_exact(scene, {Mode::kGeneralizedAlpha, 1. / 4000}, "dynamics, many segments");
+  }
+}
+
+// Those whose displacement is given are found taut and slack among the states.
+TEST(NewtonDirection, IsExactForTensionsThatAreUnknown) {
+  for (EndJoint base : {EndJoint::kFixed, EndJoint::kBall}) {
+    Scene scene = chain_with_tendons(base);
+    for (const int k : {0, 2}) {
+      scene.drives[static_cast<std::size_t>(k)].quantity = DriveQuantity::kDisplacement;
+      scene.drives[static_cast<std::size_t>(k)].profile = constant_profile(0.03);
+    }
+    expect_exact(scene, {}, "statics");
+    expect_exact(scene, {Mode::kBackwardEuler}, "dynamics");
+    set_all_effects(scene);
+    expect_exact(scene, {}, "statics, all effects");
+    expect_exact(scene, {Mode::kGeneralizedAlpha}, "dynamics, all effects");
+  }
+}
+
 TEST(NewtonDirection, IsExactForFreeJointsWithSpringsAndDampers) {
   for (JointKind first : {JointKind::kRevolute, JointKind::kPrismatic, JointKind::kBall,
                           JointKind::kUniversal, JointKind::kPlanar})

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tendons of one rod at all the sections that its discretisation asks. Only rods with tendons
+// have one.
+#pragma once
+
+#include <vector>
+
+#include "engine/math/types.h"
+#include "engine/rod/rod_model.h"
+#include "engine/section/tendon.h"
+
+namespace cprsim {
+
+/// A section that a discretisation asks, and its share of the length: weights add up to 1.
+struct AskedSection {
+  double s = 0, inside = 0;  ///< as Tendon::at
+  double weight = 0;
+};
+
+/// Tensions are given, or unknown where the displacement is: then x is the tension as long as the
+/// tendon is taut, and with x < 0 it hangs slack by c |x|, so that one row says both,
+///   gap = (length - prescribed length - c min(x, 0)) / L = 0,   tension = max(x, 0)            (1)
+class RodTendons {
+ public:
+  /// @param rest curvature of the unloaded rod, section axes. @param EI that makes c a compliance
+  RodTendons(std::vector<Tendon> tendons, double length, const std::vector<AskedSection>& sections,
+             const Vec3& rest, double EI);
+
+  RodTendons(const RodTendons&) = delete;
+  RodTendons& operator=(const RodTendons&) = delete;
+
+  void set(const std::vector<TendonPull>& pulls);
+
+  /// The law at section i, as asked; what is found there stays until the next time.
+  TendonSection& at(std::size_t i) { return sections_[i]; }
+
+  const TendonSection& at(std::size_t i) const { return sections_[i]; }
+
+  void evaluate(std::size_t section, const Vec3& u, const Vec3& v);
+
+  /// After all sections have been evaluated.
+  std::vector<TendonSample> observe() const;
+
+  void visit(Archive& archive);
+
+  /// What tendons add to the stiffness (u, v) of any section with these strains, section axes.
+  /// @param locked if not null: as locked_at()
+  Mat6 stiffness(double s, double inside, const Vec3& u, const Vec3& v, MatX* locked) const;
+
+  // unknown tensions
+  Eigen::Index unknowns() const { return static_cast<Eigen::Index>(unknown_.size()); }
+
+  VecX values() const;
+  void set_values(const VecX& x);
+
+  /// Remembers the unknowns; move() then sets them to the remembered ones plus alpha x.
+  void keep() { kept_ = values(); }
+
+  void move(double alpha, const VecX& x) { set_values(kept_ + alpha * x); }
+
+  VecX gaps() const;             ///< (1)
+  VecX gaps_by_tension() const;  ///< by its own x, where it hangs slack
+  /// Rates of (1) at rates of (u, v), one of every section.
+  VecX gap_rates(const std::vector<Vec6>& strain_rates) const;
+  /// (Lambda_m, Lambda_n) at a section per unit of an unknown; 0 where it hangs slack.
+  Vec6 per_tension(Eigen::Index unknown, std::size_t section) const;
+
+  /// The stretch of tendons whose length is held, by (u, v): 6 × number of taut unknown ones.
+  MatX locked_at(std::size_t section) const { return locked(sections_[section]); }
+
+ private:
+  std::vector<double> lengths() const;
+  MatX locked(const TendonSection& section) const;
+  Vec6 stretch_by_strain(const TendonSection& section, std::size_t tendon) const;
+
+  std::vector<Tendon> tendons_;
+  double length_ = 0;
+  std::vector<double> weights_;      ///< m, of the sections
+  std::vector<double> tensions_;     ///< N
+  std::vector<TendonPlace> places_;  ///< sections × tendons
+  std::vector<double> stretch_, directions_;
+  std::vector<TendonSection> sections_;
+  std::vector<double> unloaded_;        ///< lengths along the unloaded rod, by the same quadrature
+  std::vector<double> slackness_;       ///< c of (1), m/N
+  std::vector<std::size_t> unknown_;    ///< tendons with unknown tension
+  std::vector<double> x_, prescribed_;  ///< of all tendons: unknowns, and lengths (m)
+  VecX kept_;
+};
+
+/// By (u, v), of an evaluated section.
+Mat6 stiffness_of(const TendonSection& section);
+
+}  // namespace cprsim
