@@ -2,6 +2,9 @@
 // Functions of time.
 //   smoothstep  x = (t - start) / (end - start),  s(x) = x³ (10 - 15 x + 6 x²)            (1)
 //               the quintic with zero first and second derivative at both ends
+//   trapezoid   from D to 0 in the time T with acceleration a: D = v (T - v / a) gives the
+//               speed v = 2 D / (T + sqrt(T² - 4 D / a)) in between                        (5)
+//   chirp       A sin 2 pi (f0 x + (f1 - f0) x² / (2 T)),  x = t - start                   (6)
 //   keyframes   cubic Hermite between (t_i, y_i, m_i) and (t_{i+1}, y_{i+1}, m_{i+1})      (2)
 //   pchip       slopes of Fritsch & Carlson (SIAM J. Numer. Anal. 17, 1980) in the weighted
 //   harmonic form of
@@ -48,6 +51,48 @@ ProfileValue sine(const ProfileTerm& term, double t, bool before) {
   return {s, w * c, -w * w * s};
 }
 
+/// Speed of the middle part and duration of the first and last one; (5) for D > 0.
+struct Trapezoid {
+  double speed, ramp, acceleration;
+};
+
+Trapezoid trapezoid_of(const ProfileTerm& term) {
+  const double T = term.end - term.start, D = std::abs(term.to - term.from);
+  const double a = term.acceleration, sign = term.to < term.from ? -1 : 1;
+  const double speed = 2 * D / (T + std::sqrt(std::max(0.0, T * T - 4 * D / a)));
+  return {sign * speed, speed / a, sign * a};
+}
+
+ProfileValue trapezoid(const ProfileTerm& term, double t, bool before) {
+  if (!reached(t, term.start, before)) return {term.from, 0, 0};
+  if (reached(t, term.end, before)) return {term.to, 0, 0};
+  const auto [v, ramp, a] = trapezoid_of(term);
+  if (!reached(t, term.start + ramp, before)) {
+    const double x = t - term.start;
+    return {term.from + 0.5 * a * x * x, a * x, a};
+  }
+  if (reached(t, term.end - ramp, before)) {
+    const double x = term.end - t;
+    return {term.to - 0.5 * a * x * x, a * x, -a};
+  }
+  return {term.from + v * (t - term.start - 0.5 * ramp), v, 0};
+}
+
+ProfileValue chirp(const ProfileTerm& term, double t, bool before) {
+  if (!reached(t, term.start, before) || reached(t, term.end, before)) return {};
+  const double w0 = 2 * std::numbers::pi * term.frequency;
+  const double growth =
+      2 * std::numbers::pi * (term.last_frequency - term.frequency) / (term.end - term.start);
+  const double x = t - term.start, angle = x * (w0 + 0.5 * growth * x), w = w0 + growth * x;  // (6)
+  const double s = term.amplitude * std::sin(angle), c = term.amplitude * std::cos(angle);
+  return {s, w * c, growth * c - w * w * s};
+}
+
+ProfileValue formula(const ProfileTerm& term, double t) {
+  const Jet x = term.expression.evaluate(t);
+  return {x.value, x.rate, x.acceleration};
+}
+
 ProfileValue hermite(const ProfileTerm& term, std::size_t i, double t) {
   const double h = term.times[i + 1] - term.times[i], x = (t - term.times[i]) / h;
   const double d = (term.values[i + 1] - term.values[i]) / h;
@@ -84,8 +129,14 @@ ProfileValue evaluate_term(const ProfileTerm& term, double t, bool before) {
       return ramp(term, t, before);
     case ShapeOfTime::kSmoothstep:
       return smoothstep(term, t);
+    case ShapeOfTime::kTrapezoid:
+      return trapezoid(term, t, before);
     case ShapeOfTime::kSine:
       return sine(term, t, before);
+    case ShapeOfTime::kChirp:
+      return chirp(term, t, before);
+    case ShapeOfTime::kExpression:
+      return formula(term, t);
     case ShapeOfTime::kKeyframes:
       return keyframes(term, t, before);
   }
@@ -99,7 +150,12 @@ std::vector<double> corners(const ProfileTerm& term) {
       return {term.start};
     case ShapeOfTime::kRamp:
     case ShapeOfTime::kSine:
+    case ShapeOfTime::kChirp:
       return {term.start, term.end};
+    case ShapeOfTime::kTrapezoid: {
+      const double ramp = trapezoid_of(term).ramp;
+      return {term.start, term.start + ramp, term.end - ramp, term.end};
+    }
     case ShapeOfTime::kKeyframes:
       if (term.interpolation == Interpolation::kCubic && !term.times.empty())
         return {term.times.front(), term.times.back()};
@@ -176,6 +232,11 @@ std::vector<double> Profile::breakpoints(double end) const {
   std::sort(instants.begin(), instants.end());
   instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
   return instants;
+}
+
+double least_acceleration(const ProfileTerm& trapezoid) {
+  const double T = trapezoid.end - trapezoid.start;
+  return 4 * std::abs(trapezoid.to - trapezoid.from) / (T * T);
 }
 
 void finish_keyframes(ProfileTerm& term) {

@@ -5,23 +5,38 @@
 
 #include <vector>
 
+#include "engine/model/expression.h"
 #include "engine/model/place.h"
 
 namespace cprsim {
 
-enum class ShapeOfTime { kConstant, kStep, kRamp, kSmoothstep, kSine, kKeyframes };
+enum class ShapeOfTime {
+  kConstant,
+  kStep,
+  kRamp,
+  kSmoothstep,
+  kTrapezoid,
+  kSine,
+  kChirp,
+  kKeyframes,
+  kExpression
+};
 enum class Interpolation { kStep, kLinear, kPchip, kCubic };
 
 /// One summand. Step: `from` before `start`, `to` after. Ramp and smoothstep (quintic) go from
-/// `from` to `to` between start and end. Sine: amplitude sin(2 pi frequency (t - start) + phase)
-/// within [start, end], 0 outside. Keyframes hold their first and last value outside.
+/// `from` to `to` between start and end; so does the trapezoid, whose rate grows and falls by the
+/// given acceleration and is constant in between. Sine: amplitude sin(2 pi frequency (t - start) +
+/// phase) within [start, end], 0 outside. Chirp: likewise, its frequency growing linearly from
+/// `frequency` to `last_frequency`. Keyframes hold their first and last value outside.
 struct ProfileTerm {
   ShapeOfTime shape = ShapeOfTime::kConstant;
   double value = 0;  ///< constant
   double from = 0, to = 0, start = 0, end = 0;
-  double amplitude = 0, frequency = 0, phase = 0;
+  double amplitude = 0, frequency = 0, last_frequency = 0, phase = 0;  ///< Hz, rad
+  double acceleration = 0;  ///< of a trapezoid, > 0; at least least_acceleration()
   Interpolation interpolation = Interpolation::kLinear;
   std::vector<double> times, values, slopes;  ///< keyframes; slopes filled by finish_keyframes()
+  Expression expression;
 };
 
 /// Value and derivatives of a profile at one instant.
@@ -41,6 +56,9 @@ struct Profile {
   /// ascending.
   std::vector<double> breakpoints(double end) const;
 };
+
+/// Below it a trapezoid does not arrive in time.
+double least_acceleration(const ProfileTerm& trapezoid);
 
 /// Computes the slopes of pchip (Fritsch-Carlson) and natural cubic keyframes.
 void finish_keyframes(ProfileTerm& term);

@@ -184,6 +184,25 @@ Extremes extremes_of(const Profile& profile, double end, bool of_rate) {
   return e;
 }
 
+// A formula may have no value at some instant.
+void check_finite(Reading& r, const Profile& profile) {
+  const double end = r.scene.simulation.duration;
+  for (const ProfileTerm& term : profile.terms) {
+    if (term.shape != ShapeOfTime::kExpression) continue;
+    constexpr int kSamples = 2000;
+    for (int k = 0; k <= kSamples; ++k) {
+      const double t = end * k / kSamples;
+      const Jet x = term.expression.evaluate(t);
+      if (std::isfinite(x.value) && std::isfinite(x.rate) && std::isfinite(x.acceleration))
+        continue;
+      r.report.at(Severity::kError, "E306", profile.place, 1,
+                  "the formula, its rate or its acceleration is not finite at t = " +
+                      format_number(t) + " s");
+      break;
+    }
+  }
+}
+
 std::string axis_name(const JointSpec& joint, int axis) {
   const std::string name = "joint '" + joint.name + "'";
   return freedom_count(joint.kind) > 1 ? "axis " + std::to_string(axis + 1) + " of " + name : name;
@@ -231,6 +250,7 @@ void check_drives(Reading& r) {
   std::set<std::pair<int, int>> moved;
   for (const DriveSpec& drive : scene.drives) {
     if (drive.profile.terms.empty()) continue;
+    check_finite(r, drive.profile);
     if (drive.rod >= 0) {
       const Extremes e = extremes_of(drive.profile, scene.simulation.duration, false);
       if (e.least <= 0)

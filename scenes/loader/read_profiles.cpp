@@ -37,6 +37,41 @@ void read_keyframes(const Node& node, ProfileTerm& term) {
   finish_keyframes(term);
 }
 
+void read_trapezoid(Reading& r, const Node& node, ProfileTerm& term) {
+  term.shape = ShapeOfTime::kTrapezoid;
+  read_span(r, node, term);
+  term.acceleration = number_attribute(node, "acceleration", 0);
+  const double least = least_acceleration(term);
+  const Attribute* given = node.attribute("acceleration");
+  if (given && term.end > term.start && term.acceleration < least)
+    r.report.bad_value("E306", node, *given,
+                       "<trapezoid> does not arrive in time with so little acceleration",
+                       "at least " + format_number(least));
+}
+
+void read_chirp(Reading& r, const Node& node, ProfileTerm& term) {
+  term.shape = ShapeOfTime::kChirp;
+  term.amplitude = number_attribute(node, "amplitude", 0);
+  term.frequency = number_attribute(node, "f0", 1);
+  term.last_frequency = number_attribute(node, "f1", 1);
+  term.start = number_attribute(node, "start", 0);
+  term.end = number_attribute(node, "end", 0);
+  if (term.end <= term.start) r.report.error("E306", node, "<chirp> must end after it starts");
+}
+
+// False if it is none; then the drive is as good as absent, and nothing more is said of it.
+bool read_expression(Reading& r, const Node& node, ProfileTerm& term) {
+  term.shape = ShapeOfTime::kExpression;
+  auto parsed = Expression::parse(node.text);
+  if (const auto* mistake = std::get_if<Expression::Mistake>(&parsed)) {
+    r.report.bad_text("E306", node,
+                      mistake->what + ", at '" + node.text.substr(mistake->at, 20) + "'");
+    return false;
+  }
+  term.expression = std::get<Expression>(std::move(parsed));
+  return true;
+}
+
 bool read_term(Reading& r, const Node& node, ProfileTerm& term) {
   if (node.name == "constant") {
     term.value = number_attribute(node, "value", 0);
@@ -56,6 +91,12 @@ bool read_term(Reading& r, const Node& node, ProfileTerm& term) {
     term.start = number_attribute(node, "start", 0);
     term.end = number_attribute(node, "end", HUGE_VAL);
     if (term.end <= term.start) r.report.error("E306", node, "<sine> must end after it starts");
+  } else if (node.name == "trapezoid") {
+    read_trapezoid(r, node, term);
+  } else if (node.name == "chirp") {
+    read_chirp(r, node, term);
+  } else if (node.name == "expression") {
+    return read_expression(r, node, term);
   } else if (node.name == "keyframes") {
     read_keyframes(node, term);
   } else {

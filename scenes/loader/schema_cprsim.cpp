@@ -10,7 +10,8 @@ using T = ValueType;
 using S = Status;
 
 constexpr auto kTimed = "cprsim:profile cprsim:drive cprsim:load";
-constexpr auto kShapes = "available: constant, step, ramp, smoothstep, sine, keyframes";
+constexpr auto kShapes =
+    "available: constant, step, ramp, smoothstep, trapezoid, sine, chirp, keyframes, expression";
 
 std::vector<ElementRule> rod_elements() {
   constexpr auto kRod = "cprsim:rod cprsim:rod_class";
@@ -163,10 +164,13 @@ std::vector<ElementRule> action_elements() {
        "amplitude sin(2 pi frequency (t - start) + phase)."},
       {kTimed, "keyframes", "", T::kKeyframes, "", '*', S::kSupported,
        "time value, time value, ..."},
-      {kTimed, "chirp", "", T::kAny, kShapes, '*', S::kLater, "Rising frequency."},
-      {kTimed, "trapezoid", "", T::kAny, kShapes, '*', S::kLater, "Trapezoidal speed."},
+      {kTimed, "chirp", "", T::kEmpty, "", '*', S::kSupported,
+       "A sine whose frequency grows linearly from f0 to f1."},
+      {kTimed, "trapezoid", "", T::kEmpty, "", '*', S::kSupported,
+       "From start to end, with constant acceleration, speed, deceleration."},
       {kTimed, "csv", "", T::kAny, kShapes, '*', S::kLater, "From a file."},
-      {kTimed, "expression", "", T::kAny, kShapes, '*', S::kLater, "A formula of t."},
+      {kTimed, "expression", "", T::kText, "", '*', S::kSupported,
+       "A smooth formula of t, as in 0.1 * sin(2 * pi * t)^2."},
       {"world model", "cprsim:joint", "", T::kGroup, "", '*', S::kSupported,
        "A joint that SDFormat does not have: cylindrical, planar."},
       {"cprsim:joint", "axis3", "", T::kGroup, "", '?', S::kSupported,
@@ -290,12 +294,18 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"on_failure", "action", T::kChoice, "halve_step|stop", true, yes, "What is done."},
       {"on_failure", "retries", T::kInteger, "1", false, yes, "How often."},
       {"constant", "value", T::kNumber, "", true, yes, "The value."},
-      {"step ramp smoothstep", "to", T::kNumber, "", true, yes, "Value at the end."},
+      {"step ramp smoothstep trapezoid", "to", T::kNumber, "", true, yes, "Value at the end."},
       {"step", "from", T::kNumber, "", false, yes, "Value before; 0 if absent."},
       {"step", "at", T::kNonNegative, "s", true, yes, "Instant."},
-      {"ramp smoothstep", "from", T::kNumber, "", true, yes, "Value at the start."},
-      {"ramp smoothstep", "start", T::kNonNegative, "s", true, yes, "Start."},
-      {"ramp smoothstep", "end", T::kNonNegative, "s", true, yes, "End."},
+      {"ramp smoothstep trapezoid", "from", T::kNumber, "", true, yes, "Value at the start."},
+      {"ramp smoothstep trapezoid chirp", "start", T::kNonNegative, "s", true, yes, "Start."},
+      {"ramp smoothstep trapezoid", "end", T::kNonNegative, "s", true, yes, "End."},
+      {"trapezoid", "acceleration", T::kPositive, "", true, yes,
+       "At start and end, per s2; at least 4 |to - from| / (end - start)^2."},
+      {"chirp", "end", T::kPositive, "s", true, yes, "End; 0 outside."},
+      {"chirp", "amplitude", T::kNumber, "", true, yes, "Amplitude."},
+      {"chirp", "f0", T::kPositive, "Hz", true, yes, "Frequency at the start."},
+      {"chirp", "f1", T::kPositive, "Hz", true, yes, "Frequency at the end."},
       {"sine", "amplitude", T::kNumber, "", true, yes, "Amplitude."},
       {"sine", "frequency", T::kPositive, "Hz", true, yes, "Frequency."},
       {"sine", "phase", T::kNumber, "rad", false, yes, "Phase at start."},

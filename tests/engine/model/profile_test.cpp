@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace cprsim {
 namespace {
@@ -40,10 +41,25 @@ Profile sine() {
   return Profile{{term}, {}};
 }
 
+Profile trapezoid() {
+  Profile profile = span(ShapeOfTime::kTrapezoid, 1, -2, 0.1, 0.9);
+  profile.terms[0].acceleration = 1.3 * least_acceleration(profile.terms[0]);
+  return profile;
+}
+
+Profile chirp() {
+  Profile profile = sine();
+  profile.terms[0].shape = ShapeOfTime::kChirp;
+  profile.terms[0].last_frequency = 7;
+  return profile;
+}
+
 TEST(Profiles, AreDifferentiatedExactly) {
   const std::vector<Profile> all{span(ShapeOfTime::kRamp, 1, 3, 0.2, 0.7),
                                  span(ShapeOfTime::kSmoothstep, 1, 3, 0.2, 0.7),
                                  sine(),
+                                 trapezoid(),
+                                 chirp(),
                                  keyframes(Interpolation::kLinear, {0, 0.3, 0.8, 1}, {0, 1, -1, 2}),
                                  keyframes(Interpolation::kPchip, {0, 0.3, 0.8, 1}, {0, 1, 1.5, 2}),
                                  keyframes(Interpolation::kCubic, {0, 0.3, 0.8, 1}, {0, 1, -1, 2})};
@@ -101,6 +117,33 @@ TEST(Profiles, KnowWhereTheyAreNotSmooth) {
   Profile twice = span(ShapeOfTime::kRamp, 0, 1, 1, 2);
   twice.terms.push_back(twice.terms[0]);
   EXPECT_EQ(twice.breakpoints(5), (std::vector<double>{1, 2}));
+}
+
+TEST(Trapezoid, ArrivesInTimeWithTheAccelerationGiven) {
+  const Profile p = trapezoid();
+  const ProfileTerm& term = p.terms[0];
+  EXPECT_NEAR(p.evaluate(0.9, true).value, -2, 1e-14);
+  EXPECT_NEAR(p.evaluate(0.5).value, -0.5, 1e-14);  // by symmetry
+  EXPECT_NEAR(p.evaluate(0.9, true).rate, 0, 1e-14);
+  const std::vector<double> corners = p.breakpoints(1);
+  ASSERT_EQ(corners.size(), 4u);
+  for (const double t : corners) {  // continuous in value and rate
+    EXPECT_NEAR(p.evaluate(t).value, p.evaluate(t, true).value, 1e-14);
+    EXPECT_NEAR(p.evaluate(t).rate, p.evaluate(t, true).rate, 1e-13);
+  }
+  EXPECT_DOUBLE_EQ(p.evaluate(0.11).acceleration, -term.acceleration);
+  EXPECT_DOUBLE_EQ(p.evaluate(0.89).acceleration, term.acceleration);
+  EXPECT_EQ(p.evaluate(0.5).acceleration, 0);
+}
+
+TEST(Chirp, PassesFromOneFrequencyToTheOther) {
+  const Profile p = chirp();
+  // zero crossings with rate ± amplitude times the frequency of the moment
+  EXPECT_NEAR(p.evaluate(0.1).rate, 2 * 2 * std::numbers::pi * 3, 1e-12);
+  const ProfileValue end = p.evaluate(0.9, true);
+  const double w = 2 * std::numbers::pi * 7;
+  EXPECT_NEAR(std::hypot(end.value, end.rate / w), 2, 1e-12);
+  EXPECT_EQ(p.evaluate(0.9).value, 0);
 }
 
 TEST(Keyframes, PassThroughTheirPoints) {
