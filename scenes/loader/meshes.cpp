@@ -25,6 +25,8 @@
 #include <memory>
 #include <vector>
 
+#include "scenes/loader/values.h"
+
 namespace cprsim {
 
 namespace {
@@ -150,6 +152,37 @@ std::size_t element_depth(const std::string& text) {
   return deepest;
 }
 
+/// Whether all indices of a COLLADA file are numbers: assimp 5.2 reads one that is not for ever.
+bool indices_are_numbers(const std::string& text) {
+  for (const char* name : {"<p", "<vcount", "<v", "<ph", "<h"}) {
+    const std::string tag = name;
+    for (std::size_t at = text.find(tag); at != std::string::npos; at = text.find(tag, at + 1)) {
+      const char next = at + tag.size() < text.size() ? text[at + tag.size()] : '\0';
+      if (next != '>' && next != ' ' && next != '\t' && next != '\n' && next != '\r') continue;
+      const std::size_t begin = text.find('>', at);
+      if (begin == std::string::npos) return false;
+      const std::size_t end = std::min(text.find('<', begin), text.size());
+      if (text.find_first_not_of("+-0123456789 \t\r\n", begin + 1) < end) return false;
+    }
+  }
+  return true;
+}
+
+/// Whether the file claims to hold more of something than it has bytes.
+bool claims_too_much(const std::string& text) {
+  const std::string word = "count=";
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const std::size_t begin = at + word.size() + 1;
+    std::size_t end = begin;
+    while (end < text.size() && text[end] >= '0' && text[end] <= '9')
+      ++end;
+    const auto claimed = parse_integer(text.substr(begin, end - begin));
+    if (end - begin > 18 || (claimed && *claimed > static_cast<long long>(text.size())))
+      return true;
+  }
+  return false;
+}
+
 /// Why the file is not even shown to assimp; empty if it may be.
 std::string refusal(const fs::path& path, const std::string& kind) {
   std::error_code problem;
@@ -166,6 +199,8 @@ std::string refusal(const fs::path& path, const std::string& kind) {
     if (element_depth(text) > kMostNested || count_of(text, "<instance_node") > kMostNested) {
       return "nodes nested deeper than " + std::to_string(kMostNested);
     }
+    if (!indices_are_numbers(text)) return "an index is not a number";
+    if (claims_too_much(text)) return "a count is larger than the file";
     return "";
   }
   // nodes name their children, possibly with escaped letters: a chain is no longer than their

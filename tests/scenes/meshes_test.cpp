@@ -205,6 +205,21 @@ TEST_F(Meshes, RefusesNestingThatWouldExhaustTheStack) {
   EXPECT_NE(error_.find("children"), std::string::npos) << error_;
 }
 
+// Found by tests/fuzz: assimp read the first for ever, into ever more memory.
+TEST_F(Meshes, RefusesColladaThatAssimpDoesNotSurvive) {
+  const auto dae = [](const std::string& indices, const std::string& count) {
+    return "<?xml version=\"1.0\"?><COLLADA version=\"1.4.1\"><library_geometries><geometry "
+           "id=\"g\">"
+           "<mesh><triangles count=\"" +
+           count + "\"><p>" + indices +
+           "</p></triangles></mesh></geometry></library_geometries></COLLADA>";
+  };
+  load(write("index.dae", dae("\x81 1 2", "1")));
+  EXPECT_NE(error_.find("index"), std::string::npos) << error_;
+  load(write("count.dae", dae("0 1 2", "4000000000")));
+  EXPECT_NE(error_.find("count"), std::string::npos) << error_;
+}
+
 TEST_F(Meshes, SaysWhyAFileIsNotRead) {
   load(write("x.ply", "ply\n"));
   EXPECT_NE(error_.find("'ply' is not read"), std::string::npos);
