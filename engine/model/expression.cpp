@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recursive descent into postfix order, and its evaluation in second-order Taylor arithmetic
-// (Griewank & Walther, Evaluating Derivatives, 2nd ed. 2008, chapter 13).
+// A recursive descent into postfix order, and its evaluation.
 #include "engine/model/expression.h"
 
 #include <array>
@@ -50,43 +49,6 @@ namespace {
 
 constexpr std::size_t kDeepest = 48;      ///< nested operations: bounds the stack of a parse
 constexpr std::size_t kMostValues = 256;  ///< waiting at once during an evaluation
-
-Jet operator+(const Jet& a, const Jet& b) {
-  return {a.value + b.value, a.rate + b.rate, a.acceleration + b.acceleration};
-}
-
-Jet operator-(const Jet& a, const Jet& b) {
-  return {a.value - b.value, a.rate - b.rate, a.acceleration - b.acceleration};
-}
-
-Jet operator*(const Jet& a, const Jet& b) {
-  return {a.value * b.value, a.rate * b.value + a.value * b.rate,
-          a.acceleration * b.value + 2 * a.rate * b.rate + a.value * b.acceleration};
-}
-
-/// f(a), from f and its derivatives at a.
-Jet chain(const Jet& a, double f, double f1, double f2) {
-  return {f, f1 * a.rate, f2 * a.rate * a.rate + f1 * a.acceleration};
-}
-
-bool is_constant(const Jet& a) {
-  return a.rate == 0 && a.acceleration == 0;
-}
-
-Jet power(const Jet& a, const Jet& b) {
-  const double f = std::pow(a.value, b.value);
-  if (is_constant(a) && is_constant(b)) return {f, 0, 0};
-  if (is_constant(b)) {
-    const double n = b.value;
-    // 0 · pow(0, -1) is 0 here: a² has derivatives at 0
-    const double f1 = n == 0 ? 0 : n * std::pow(a.value, n - 1);
-    const double f2 = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(a.value, n - 2);
-    return chain(a, f, f1, f2);
-  }
-  const double x = a.value;
-  const Jet exponent = b * chain(a, std::log(x), 1 / x, -1 / (x * x));
-  return chain(exponent, f, f, f);
-}
 
 struct Function {
   const char* name;

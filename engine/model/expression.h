@@ -12,12 +12,9 @@
 #include <variant>
 #include <vector>
 
-namespace cprsim {
+#include "engine/model/jet.h"
 
-/// A value with its first and second derivative with respect to time.
-struct Jet {
-  double value = 0, rate = 0, acceleration = 0;
-};
+namespace cprsim {
 
 class Expression {
  public:

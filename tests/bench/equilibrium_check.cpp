@@ -66,12 +66,14 @@ double add_joints(const Robot& robot, Balance& balance, EquilibriumCheck& check)
     balance.add(joint.parent, C.p, -force, -moment);
     const Vec3 axis = P.R * joint.spec->axis;
     const Vec3 apart = C.p - P.p;
-    if (joint.freedoms.size() != 1) continue;  // no shipped robot has one
+    if (joint.freedoms.size() != 1) continue;  // freedoms beside each other are not looked into
     const Joint::Freedom& freedom = joint.freedoms.front();
     const bool slides = joint.spec->kind == JointKind::kPrismatic;
-    const Vec3 across = slides ? Vec3(apart - apart.dot(axis) * axis) : apart;
+    const bool screws = joint.spec->kind == JointKind::kScrew;
+    const Vec3 across = slides || screws ? Vec3(apart - apart.dot(axis) * axis) : apart;
     check.gap = std::max(check.gap, across.norm() / robot.scale.length);
-    if (freedom.unknown < 0 || freedom.effort != 0 || joint.spec->spring_stiffness != 0) continue;
+    if (freedom.unknown < 0 || freedom.effort != 0 || joint.spec->spring_stiffness != 0 || screws)
+      continue;
     worst = std::max(worst, slides ? std::abs(axis.dot(force)) / robot.scale.force
                                    : std::abs(axis.dot(moment)) / robot.scale.moment());
   }

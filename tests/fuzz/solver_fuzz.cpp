@@ -8,9 +8,8 @@
 #include "tests/fuzz/target.h"
 #include "tests/support/robots.h"
 
+namespace cprsim {
 namespace {
-
-using namespace cprsim;
 
 /// Draws numbers from the fuzzer's bytes; zeros when they are used up.
 class Dice {
@@ -71,8 +70,10 @@ Scene random_rod(Dice& dice) {
 }
 
 }  // namespace
+}  // namespace cprsim
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace cprsim;
   Dice dice(data, size);
   const Scene scene = random_rod(dice);
   Simulation simulation(scene);

@@ -10,9 +10,13 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
+namespace cprsim {
+
 /// Ends the program, which is how a fuzzer learns of a claim that does not hold.
 inline void require(bool holds, const char* claim) {
   if (holds) return;
   std::fprintf(stderr, "fuzz target: not so: %s\n", claim);
   std::abort();
 }
+
+}  // namespace cprsim

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Simulates robots that nobody designed (random_robot.h), each in a process of its own with a
+// budget, and counts how they end. Writes FOLDER/random_robots.md. Ends with 1 if one of them
+// crashed, ran out of its budget, failed without a reason, or was called converged and is not.
+//   cprsim_random_robots [--robots N] [--seed S] [--budget SECONDS] FOLDER
+//   cprsim_random_robots --show SEED        prints the scene
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine/run/simulation.h"
+#include "engine/study/static_study.h"
+#include "scenes/loader/load.h"
+#include "tests/bench/equilibrium_check.h"
+#include "tests/bench/random_robot.h"
+
+namespace cprsim {
+namespace {
+
+constexpr double kBalanced = 1e-6;  // of the force scale, and of the robot's length
+constexpr double kEnergy = 0.05;    // what adaptive steps may miss of all energy that moved
+
+struct Options {
+  std::string folder;
+  std::uint64_t robots = 10000, seed = 1;
+  unsigned budget = 60;  ///< s of CPU
+};
+
+/// How a robot ended, as the child writes it: a letter and a reason.
+enum class End : char {
+  kDone = 'd',     ///< to the end
+  kReason = 'r',   ///< with a typed reason
+  kRefused = 'n',  ///< by the loader
+  kWrong = 'w',    ///< converged, and out of balance
+  kCrashed = 'c',
+  kBudget = 'b'
+};
+
+struct Result {
+  End end = End::kCrashed;
+  std::string reason;
+};
+
+/// Numbers differ from robot to robot, reasons do not.
+std::string without_numbers(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool digit = std::isdigit(static_cast<unsigned char>(text[i])) != 0;
+    if (!digit)
+      out += text[i];
+    else if (out.empty() || out.back() != '#')
+      out += '#';
+  }
+  return out.substr(0, out.find_first_of(";\n"));
+}
+
+Result solve_static(const Scene& scene) {
+  StaticStudy study(scene);
+  const SolveReport report = study.solve();
+  if (!report.converged())
+    return {End::kReason, std::string("statics: ") + to_string(report.status)};
+  const EquilibriumCheck check = check_equilibrium(study);
+  if (!(check.imbalance < kBalanced) || !(check.gap < kBalanced))
+    return {End::kWrong, "statics: called converged and out of balance"};
+  return {End::kDone, {}};
+}
+
+bool is_finite(const Snapshot& now) {
+  for (const RodSample& rod : now.rods)
+    for (const RodPoint& point : rod.points)
+      if (!point.position.allFinite() || !point.force.allFinite()) return false;
+  return std::isfinite(now.energy.total);
+}
+
+Result simulate(const Scene& scene, const RandomRobot& robot) {
+  Simulation simulation(scene);
+  simulation.start();
+  double largest = 0;  // energy that moved
+  const auto look = [&] {
+    const EnergySample& e = simulation.now().energy;
+    largest = std::max(largest, std::abs(e.kinetic) + std::abs(e.elastic) + std::abs(e.work) +
+                                    std::abs(e.dissipated));
+  };
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    look();
+  }
+  if (simulation.status() == RunStatus::kFailed) {
+    if (simulation.failure().empty()) return {End::kWrong, "failed without a reason"};
+    return {End::kReason, robot.mode + ": " + to_string(simulation.last_report().status)};
+  }
+  if (!is_finite(simulation.now())) return {End::kWrong, "done with numbers that are not finite"};
+  const double balance = std::abs(simulation.now().energy.balance);
+  const RobotScale& scale = simulation.robot().scale;
+  const double noise = 1e-9 * scale.force * scale.length;
+  if (robot.adaptive && balance > kEnergy * largest + noise)
+    return {End::kWrong, "dynamic: the energy balance is open"};
+  return {End::kDone, {}};
+}
+
+Result try_robot(const RandomRobot& robot) {
+  const LoadResult loaded = load_scene_text(robot.text, "random.xml");
+  if (!loaded.scene) {
+    for (const Diagnostic& d : loaded.diagnostics)
+      if (d.severity == Severity::kError)
+        return {End::kRefused, d.code + " " + without_numbers(d.message)};
+    return {End::kWrong, "refused without a reason"};
+  }
+  const bool at_rest = robot.mode == "static" && !robot.contact;  // studies see no contact
+  return at_rest ? solve_static(*loaded.scene) : simulate(*loaded.scene, robot);
+}
+
+/// In a child with limits, so that nothing that happens there ends the count.
+Result in_child(const RandomRobot& robot, unsigned budget) {
+  int ends[2];
+  if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("no process");
+  if (child == 0) {
+    ::close(ends[0]);
+    const rlimit time{budget, budget + 1};
+    ::setrlimit(RLIMIT_CPU, &time);
+    Result result;
+    try {
+      result = try_robot(robot);
+    } catch (const std::exception& error) {
+      result = {End::kCrashed, std::string("exception: ") + without_numbers(error.what())};
+    }
+    const std::string line = static_cast<char>(result.end) + result.reason;
+    const ssize_t written = ::write(ends[1], line.data(), line.size());
+    ::_exit(written == static_cast<ssize_t>(line.size()) ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string line(4096, '\0');
+  const ssize_t read = ::read(ends[0], line.data(), line.size());
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGXCPU || signal == SIGKILL) return {End::kBudget, "out of its budget"};
+    return {End::kCrashed, std::string("signal ") + ::strsignal(signal)};
+  }
+  if (read < 1) return {End::kCrashed, "said nothing"};
+  line.resize(static_cast<std::size_t>(read));
+  return {static_cast<End>(line[0]), line.substr(1)};
+}
+
+struct Tally {
+  std::map<End, std::uint64_t> all;
+  std::map<std::string, std::map<End, std::uint64_t>> by_kind;
+  std::map<std::pair<End, std::string>, std::vector<std::uint64_t>> reasons;  ///< seeds
+
+  void add(const RandomRobot& robot, std::uint64_t seed, const Result& result) {
+    ++all[result.end];
+    ++by_kind["mode " + robot.mode][result.end];
+    ++by_kind["method " + robot.method][result.end];
+    ++by_kind[robot.contact ? "beside obstacles" : "without obstacles"][result.end];
+    const int least = robot.rods < 3 ? 1 : robot.rods < 7 ? 3 : 7;
+    ++by_kind[std::to_string(least) + (least == 1   ? " or 2 rods"
+                                       : least == 3 ? " to 6 rods"
+                                                    : " to 12 rods")][result.end];
+    if (result.end != End::kDone) reasons[{result.end, result.reason}].push_back(seed);
+  }
+};
+
+const std::pair<End, const char*> kEnds[] = {
+    {End::kDone, "to the end"}, {End::kReason, "with a reason"}, {End::kRefused, "refused"},
+    {End::kWrong, "wrong"},     {End::kCrashed, "crashed"},      {End::kBudget, "out of budget"}};
+
+void write_page(const Options& options, const Tally& tally) {
+  std::ofstream page(options.folder + "/random_robots.md");
+  page << "# Robots that nobody designed\n\nMade by `cprsim_random_robots --robots "
+       << options.robots << " --seed " << options.seed << " --budget " << options.budget
+       << "` (tests/bench/random_robots.cpp; `--show SEED` prints a scene). Every robot has 1 to "
+          "12 rods of "
+          "radius 0.1 to 20 mm, 10 to 100,000 times as long, of 1 kPa to 400 GPa, all joints of "
+          "rods and "
+          "bodies, every effect, method and scheme, ten steps of 1e-5 to 5e-2 s, a third of them "
+          "beside "
+          "obstacles. Most are absurd: rods that weigh thousands of times what they can carry.\n\n"
+          "An equilibrium is wrong if forces on a body, joint or rod do not sum up to zero within "
+          "1e-6 of "
+          "EI / L², a motion if its numbers are not finite or, with adaptive steps, if 5 % of all "
+          "energy "
+          "that moved is missing.\n\n| robots | all |";
+  for (const auto& [end, name] : kEnds)
+    page << " " << name << " |";
+  page << "\n|---|---|---|---|---|---|---|---|\n";
+  const auto row = [&](const std::string& name, const std::map<End, std::uint64_t>& counts) {
+    std::uint64_t sum = 0;
+    for (const auto& [end, count] : counts)
+      sum += count;
+    page << "| " << name << " | " << sum << " |";
+    for (const auto& [end, unused] : kEnds)
+      page << " " << (counts.count(end) ? counts.at(end) : 0) << " |";
+    page << "\n";
+  };
+  row("all", tally.all);
+  for (const auto& [kind, counts] : tally.by_kind)
+    row(kind, counts);
+  page << "\n## Those that did not reach the end\n\n| how | reason | robots | seeds "
+          "|\n|---|---|---|---|\n";
+  for (const auto& [key, seeds] : tally.reasons) {
+    const auto* name = std::find_if(std::begin(kEnds), std::end(kEnds),
+                                    [&](const auto& entry) { return entry.first == key.first; });
+    page << "| " << name->second << " | " << key.second << " | " << seeds.size() << " |";
+    for (std::size_t i = 0; i < std::min<std::size_t>(seeds.size(), 3); ++i)
+      page << " " << seeds[i];
+    page << (seeds.size() > 3 ? " ... |\n" : " |\n");
+  }
+}
+
+int run(const Options& options) {
+  Tally tally;
+  for (std::uint64_t k = 0; k < options.robots; ++k) {
+    const std::uint64_t seed = options.seed + k;
+    const RandomRobot robot = random_robot(seed);
+    tally.add(robot, seed, in_child(robot, options.budget));
+  }
+  write_page(options, tally);
+  for (const auto& [end, name] : kEnds)
+    std::printf("%-14s %llu\n", name, static_cast<unsigned long long>(tally.all[end]));
+  for (const auto& [key, seeds] : tally.reasons)
+    if (key.first != End::kReason)
+      std::printf("%c %s: %zu, first seed %llu\n", static_cast<char>(key.first), key.second.c_str(),
+                  seeds.size(), static_cast<unsigned long long>(seeds[0]));
+  return tally.all[End::kWrong] + tally.all[End::kCrashed] + tally.all[End::kBudget] > 0 ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace cprsim
+
+int main(int argc, char** argv) {
+  cprsim::Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&] { return i + 1 < argc ? std::stoull(argv[++i]) : 0ULL; };
+    if (word == "--show") {
+      std::fputs(cprsim::random_robot(value()).text.c_str(), stdout);
+      return 0;
+    }
+    if (word == "--robots")
+      options.robots = value();
+    else if (word == "--seed")
+      options.seed = value();
+    else if (word == "--budget")
+      options.budget = static_cast<unsigned>(value());
+    else
+      options.folder = word;
+  }
+  if (options.folder.empty()) {
+    std::fputs("cprsim_random_robots [--robots N] [--seed S] [--budget SECONDS] FOLDER\n", stderr);
+    return 2;
+  }
+  return cprsim::run(options);
+}
