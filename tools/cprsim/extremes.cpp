@@ -28,6 +28,13 @@ void Extremes::visit(Archive& archive) {
     archive(*x);
 }
 
+std::optional<double> Extremes::relative_balance() const {
+  // an equilibrium that stays one exchanges round-off
+  const double stored = std::abs(energy_.elastic) + std::abs(energy_.gravity);
+  if (exchanged() <= 1e-12 * stored) return std::nullopt;
+  return worst_balance_ / exchanged();
+}
+
 double Extremes::exchanged() const {
   return std::max({largest_work_, largest_kinetic_, std::abs(energy_.dissipated)});
 }

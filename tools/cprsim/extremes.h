@@ -2,6 +2,8 @@
 // What is kept of a run for its report: the energy balance and the deepest penetration.
 #pragma once
 
+#include <optional>
+
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
@@ -33,6 +35,9 @@ class Extremes : public Sink {
   /// The largest energy that was exchanged, to which the balance is compared: work, kinetic energy
   /// or dissipated energy. 0 if nothing moved.
   double exchanged() const;
+
+  /// How much of it the balance misses at worst; nothing if nothing but round-off moved.
+  std::optional<double> relative_balance() const;
 
  private:
   void note(const Snapshot& now);

@@ -214,6 +214,13 @@ int run_to_accuracy(Run& run) {
   show(run);
   if (run.report.accuracy && !run.report.accuracy->reached())
     run.console.warn(describe(*run.report.accuracy));
+  constexpr double kOpen = 0.1;  // of the energy that moved
+  const double balance = run.report.extremes.relative_balance().value_or(0);
+  if (run.scene.simulation.mode == Mode::kDynamic && balance > kOpen)
+    run.console.warn(
+        fmt::format("{:.0f} % of the energy that moved is not accounted for: steps or rods are too "
+                    "coarse for this motion, or the scheme damps it",
+                    100 * balance));
   return run.report.exit_code;
 }
 

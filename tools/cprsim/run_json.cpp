@@ -124,9 +124,7 @@ Json energy_json(const Extremes& extremes) {
                {"balance", energy.balance},
                {"worst_balance", extremes.worst_balance()},
                {"exchanged", extremes.exchanged()}};
-  if (extremes.exchanged() > 0) {
-    json["worst_relative_balance"] = extremes.worst_balance() / extremes.exchanged();
-  }
+  if (const auto relative = extremes.relative_balance()) json["worst_relative_balance"] = *relative;
   return json;
 }
 

@@ -55,14 +55,12 @@ std::string energy_line(const Scene& scene, const RunReport& report) {
     return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity\n",
                        extremes.energy().elastic, extremes.energy().gravity);
   }
-  // an equilibrium that stays one exchanges round-off
-  const double stored = std::abs(extremes.energy().elastic) + std::abs(extremes.energy().gravity);
-  if (extremes.exchanged() <= 1e-12 * stored) return "  energy     nothing moved\n";
+  if (!extremes.relative_balance()) return "  energy     nothing moved\n";
   const char* of = extremes.exchanged() == extremes.largest_work()      ? "work done"
                    : extremes.exchanged() == extremes.largest_kinetic() ? "largest kinetic energy"
                                                                         : "energy dissipated";
   return fmt::format("  energy     balance closes to {:.1e} of the {}\n",
-                     extremes.worst_balance() / extremes.exchanged(), of);
+                     *extremes.relative_balance(), of);
 }
 
 std::string accuracy_line(const RunReport& report) {
