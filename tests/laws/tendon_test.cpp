@@ -187,7 +187,7 @@ TEST_P(Tendons, AgreeWithTheEquationsOfRuckerAndWebster) {
   if (GetParam() == Method::kStrain) scene.solver.order = 12;
   switch_on(scene, {Effect::kGravity, Effect::kExtension, Effect::kShear});
   const SectionProperties section = section_properties(scene.rods[0]);
-  ReferenceRod reference{kLength, section.K_bt, section.K_se, {}, {}, {}};
+  PulledReferenceRod reference{kLength, section.K_bt, section.K_se, {}, {}, {}};
   reference.tendons = {{kOffset, 0.3, 0, 15}, {kOffset, 1.7, 1.2, 12}, {0.01, -2, -0.7, 30}};
   const Vec3 gravity(4, -6, -7);
   reference.load = section.rhoA * gravity;

@@ -36,7 +36,7 @@ Way way(const ReferenceTendon& tendon, double s, double length) {
 
 const Vec3 kStraight(0, 0, 1);
 
-State rate(const ReferenceRod& rod, double s, const State& y) {
+State rate(const PulledReferenceRod& rod, double s, const State& y) {
   const Vec3 n = rod.K_se.cwiseProduct(y.v - kStraight), m = rod.K_bt.cwiseProduct(y.u);
   // rows n', m'; columns v', u'
   Mat6 A = Mat6::Zero();
@@ -63,7 +63,7 @@ State rate(const ReferenceRod& rod, double s, const State& y) {
 
 // The boundary condition at the tip is the law of an end section: solved by repeated substitution,
 // which contracts as tension over stiffness.
-State tip(const ReferenceRod& rod) {
+State tip(const PulledReferenceRod& rod) {
   State y;
   y.u = Vec3::Zero();
   y.v = kStraight;
@@ -83,7 +83,7 @@ State tip(const ReferenceRod& rod) {
 
 }  // namespace
 
-ReferenceBase solve_tendon_rod(const ReferenceRod& rod, int steps) {
+ReferenceBase solve_tendon_rod(const PulledReferenceRod& rod, int steps) {
   State y = tip(rod);
   const double h = -rod.length / steps;
   for (int k = 0; k < steps; ++k) {

@@ -19,7 +19,7 @@ struct ReferenceTendon {
   double radius = 0, angle = 0, turns = 0, tension = 0;
 };
 
-struct ReferenceRod {
+struct PulledReferenceRod {
   double length = 0;
   Vec3 K_bt, K_se;
   std::vector<ReferenceTendon> tendons;
@@ -32,6 +32,6 @@ struct ReferenceBase {
   Vec3 u, v;  ///< strains at the base
 };
 
-ReferenceBase solve_tendon_rod(const ReferenceRod& rod, int steps);
+ReferenceBase solve_tendon_rod(const PulledReferenceRod& rod, int steps);
 
 }  // namespace cprsim
