@@ -16,8 +16,9 @@ struct RecordSpec {
   double rate = 0;  ///< Hz; 0: every step
   std::string prefix;
   std::vector<Channel> channels;  ///< globs expanded, in order
-  bool csv = false;
-  int vtk_every = 0;  ///< every n-th record; 0: no VTK
+  bool csv = false, hdf5 = false, npz = false;
+  int vtk_every = 0;    ///< every n-th record; 0: no VTK
+  double gltf_fps = 0;  ///< frames per simulated second, whatever the rate; 0: no glTF
 };
 
 enum class ExpectKind { kValue, kBound, kDrift, kMatch, kEvent, kConverged };

@@ -96,6 +96,7 @@ void read_record(Reading& r, const Node& node) {
         record.channels.push_back(found);
     }
   record.csv = node.child("csv") != nullptr;
+  record.hdf5 = node.child("hdf5") != nullptr;
   if (const Node* vtk = node.child("vtk"))
     record.vtk_every = static_cast<int>(number_attribute(*vtk, "every", 1));
   r.scene.records.push_back(std::move(record));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loaded before the C library (LD_PRELOAD): lets one call fail. CPRSIM_FAULT=write:7:28 makes the
-// seventh write() answer ENOSPC; write:7:28:on also every later one. Calls: malloc, open, write,
-// fsync, rename. Writes to the standard streams do not count.
+// seventh write() (or pwrite()) answer ENOSPC; write:7:28:on also every later one. Calls: malloc,
+// open, write, fsync, rename. Writes to the standard streams do not count.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -76,6 +76,12 @@ int open(const char* path, int flags, ...) {
 ssize_t write(int descriptor, const void* data, std::size_t size) {
   if (descriptor > 2 && fails("write")) return -1;
   return next<ssize_t (*)(int, const void*, std::size_t)>("write")(descriptor, data, size);
+}
+
+ssize_t pwrite(int descriptor, const void* data, std::size_t size, off_t offset) {
+  if (fails("write")) return -1;
+  return next<ssize_t (*)(int, const void*, std::size_t, off_t)>("pwrite")(descriptor, data, size,
+                                                                           offset);
 }
 
 int fsync(int descriptor) {

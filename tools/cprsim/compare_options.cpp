@@ -15,9 +15,8 @@ namespace {
 constexpr const char* kAbout =
     "Compares a run with a reference trajectory, at the reference's instants: no extrapolation,\n"
     "linear between the run's samples, attitudes along the shortest arc.\n"
-    "RUN is the folder of a run, a CSV file or a TUM trajectory, REFERENCE a CSV or TUM file "
-    "whose\n"
-    "columns have the run's names, or end like them (position.x, orientation.w).\n\n"
+    "RUN is the folder of a run or a file, REFERENCE a file (CSV, HDF5 or TUM) whose columns\n"
+    "have the run's names, or end like them (position.x, orientation.w).\n\n"
     "Examples\n"
     "  cprsim compare out/planar measured.csv --max 0.002\n"
     "  cprsim compare out/planar mocap.tum --map robot::platform= --align yaw --apply-lag\n"
@@ -84,8 +83,8 @@ void add_frame_options(CommandLine& line, CompareOptions& options) {
 std::variant<CompareOptions, int> parse_compare_options(const Words& words) {
   CompareOptions options;
   CommandLine line("cprsim compare", kAbout);
-  line.argument("RUN", options.run, "Folder of a run, or a CSV or TUM file");
-  line.argument("REFERENCE", options.reference, "CSV or TUM file");
+  line.argument("RUN", options.run, "Folder of a run, or a CSV, HDF5 or TUM file");
+  line.argument("REFERENCE", options.reference, "CSV, HDF5 or TUM file");
   line.each("--of", "QUANTITY", "Compare only this, e.g. robot::platform.position",
             [&options](const std::string& text) { options.of.push_back(text); });
   line.each("--map", "NAME=REF", "The reference calls REF what the run calls NAME",

@@ -13,6 +13,7 @@
 #include "tools/cprsim/commands.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/version.h"
+#include "tools/sinks/array_writer.h"
 #include "tools/sinks/output_file.h"
 
 namespace cprsim {
@@ -55,7 +56,8 @@ Json versions() {
                               FMT_VERSION % 100)},
           {"CLI11", CLI11_VERSION},
           {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
-                                        NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)}};
+                                        NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
+          {"HDF5", hdf5_version().empty() ? "not built in (libhdf5-dev)" : hdf5_version()}};
 }
 
 }  // namespace

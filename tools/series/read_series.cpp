@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scenes/loader/values.h"
+#include "tools/series/hdf5_series.h"
 
 namespace cprsim {
 
@@ -93,6 +95,19 @@ Series to_series(const MeasuredTable& table) {
   return series;
 }
 
+/// The files of a run that hold channels, each recording once.
+std::vector<std::string> recordings_of(const nlohmann::json& files) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;  // without their extensions
+  for (const char* kind : {"csv", "hdf5"})
+    for (const nlohmann::json& entry : files) {
+      const std::string name = entry.value("name", "");
+      if (entry.value("kind", "") == kind && seen.insert(fs::path(name).replace_extension()).second)
+        names.push_back(name);
+    }
+  return names;
+}
+
 }  // namespace
 
 Series parse_series(const std::string& text, const std::string& name) {
@@ -100,7 +115,13 @@ Series parse_series(const std::string& text, const std::string& name) {
   return to_series(parse_measured_table(text, name));
 }
 
+bool is_hdf5(const std::string& path) {
+  const std::string extension = fs::path(path).extension();
+  return extension == ".h5" || extension == ".hdf5";
+}
+
 Series read_series(const std::string& path) {
+  if (is_hdf5(path)) return read_hdf5_series(path);
   return parse_series(table_text(path), path);
 }
 
@@ -114,13 +135,12 @@ RecordedRun read_run(const std::string& folder) {
   run.label = report.value("label", "run");
   run.folder = folder;
   const nlohmann::json files = report.value("files", nlohmann::json::array());
-  for (const nlohmann::json& entry : files)
-    if (entry.value("kind", "") == "csv")
-      run.recordings.push_back(read_series((fs::path(folder) / entry.value("name", "")).string()));
+  for (const std::string& name : recordings_of(files))
+    run.recordings.push_back(read_series((fs::path(folder) / name).string()));
   if (run.recordings.empty())
     throw std::runtime_error(folder +
-                             ": the run recorded no CSV file; its scene needs a <cprsim:record> "
-                             "with <csv/> and the channels");
+                             ": the run recorded neither CSV nor HDF5 files; its scene needs a "
+                             "<cprsim:record> with <csv/> or <hdf5/> and the channels");
   const nlohmann::json method = report.value("method", nlohmann::json::object());
   const nlohmann::json rods = method.value("rods", nlohmann::json::array());
   for (const nlohmann::json& rod : rods)

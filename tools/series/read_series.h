@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories from files: CSV with a time column, TUM (t x y z qx qy qz qw), or a recorded run.
+// Trajectories from files: CSV with a time column, TUM (t x y z qx qy qz qw), HDF5, or a recorded
+// run.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,8 @@ namespace cprsim {
 
 /// CSV: a column called time, t or stamp, others by name. A file whose first line of data is eight
 /// numbers is TUM; its columns are position.x .. orientation.w. Units that a header names are
-/// turned into SI; where it names none the column's unit stays empty.
+/// turned into SI; where it names none the column's unit stays empty. HDF5 (.h5, .hdf5): see
+/// hdf5_series.h.
 /// @throws TableError
 Series read_series(const std::string& path);
 Series parse_series(const std::string& text, const std::string& name);
@@ -21,11 +23,12 @@ Series parse_series(const std::string& text, const std::string& name);
 /// What a run recorded: its folder, and what run.json there says.
 struct RecordedRun {
   std::string label, folder;
-  std::vector<Series> recordings;     ///< one per CSV file
+  std::vector<Series> recordings;     ///< one per CSV file; HDF5 where there is no CSV
   std::optional<double> longest_rod;  ///< m
 };
 
-/// @throws TableError, std::runtime_error if the folder holds no run or the run no CSV file
+/// @throws TableError, std::runtime_error if the folder holds no run, or the run neither CSV nor
+/// HDF5 files
 RecordedRun read_run(const std::string& folder);
 
 }  // namespace cprsim

@@ -36,10 +36,37 @@ void sync_folder(const std::filesystem::path& folder) {
   ::close(descriptor);
 }
 
+/// The step from a whole part to the file.
+void rename_part(const std::filesystem::path& part, const std::filesystem::path& path) {
+  if (::rename(part.c_str(), path.c_str()) != 0) fail("rename to its final name", part);
+  sync_folder(path.parent_path());
+}
+
+void sync_descriptor(int descriptor, const std::filesystem::path& path) {
+  if (::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail("write", path);
+}
+
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), part_(path_) {
-  part_ += ".part";
+std::filesystem::path part_of(const std::filesystem::path& path) {
+  return path.string() + ".part";
+}
+
+void commit_part(const std::filesystem::path& path) {
+  const std::filesystem::path part = part_of(path);
+  const int descriptor = ::open(part.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail("open", part);
+  try {
+    sync_descriptor(descriptor, part);
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  ::close(descriptor);
+  rename_part(part, path);
+}
+
+OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), part_(part_of(path_)) {
   descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("create", part_);
 }
@@ -60,14 +87,13 @@ void OutputFile::flush() {
 
 void OutputFile::sync() {
   flush();
-  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) fail("write", part_);
+  sync_descriptor(descriptor_, part_);
 }
 
 void OutputFile::commit() {
   sync();
   close_descriptor();
-  if (::rename(part_.c_str(), path_.c_str()) != 0) fail("rename to its final name", part_);
-  sync_folder(path_.parent_path());
+  rename_part(part_, path_);
 }
 
 void OutputFile::close_descriptor() {

@@ -42,6 +42,13 @@ class OutputFile {
   int descriptor_ = -1;
 };
 
+/// What a file is called until it is complete.
+std::filesystem::path part_of(const std::filesystem::path& path);
+
+/// Gives a file that others wrote under the name of its part, and closed, its own name once it is
+/// on the disk. @throws OutputError
+void commit_part(const std::filesystem::path& path);
+
 /// The whole of a small file at once.
 void write_file(const std::filesystem::path& path, std::string_view text);
 

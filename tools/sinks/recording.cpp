@@ -17,14 +17,19 @@ Recording::Recording(const Scene& scene, const RecordSpec& spec,
                      const std::filesystem::path& folder)
     : scene_(scene), spec_(spec), reader_(scene, spec.channels) {
   if (spec.csv) csv_.emplace(folder / (spec.prefix + ".csv"), spec.channels);
+  if (spec.hdf5) arrays_.push_back(make_hdf5_writer(folder / (spec.prefix + ".h5"), scene));
   if (spec.vtk_every > 0) vtk_.emplace(folder, spec.prefix);
 }
 
 void Recording::begin(const Snapshot& start) {
+  for (const auto& arrays : arrays_)
+    arrays->start(spec_.channels, start);
   record(start);
 }
 
 void Recording::resume(const Snapshot& now) {
+  for (const auto& arrays : arrays_)
+    arrays->start(spec_.channels, now);
   if (spec_.rate > 0)
     records_ = static_cast<long>(std::floor(now.time * spec_.rate + kRoundOff)) + 1;
 }
@@ -32,6 +37,8 @@ void Recording::resume(const Snapshot& now) {
 void Recording::visit(Archive& archive) {
   archive(records_);
   reader_.visit(archive);
+  for (const auto& arrays : arrays_)
+    arrays->visit(archive);
 }
 
 void Recording::step(const Snapshot& before, const Snapshot& now) {
@@ -48,18 +55,27 @@ void Recording::step(const Snapshot& before, const Snapshot& now) {
 }
 
 void Recording::record(const Snapshot& snapshot) {
-  if (csv_) csv_->write_row(snapshot.time, reader_.read(snapshot));
+  if (csv_ || !arrays_.empty()) {
+    const std::vector<double>& values = reader_.read(snapshot);
+    if (csv_) csv_->write_row(snapshot.time, values);
+    for (const auto& arrays : arrays_)
+      arrays->write_row(snapshot, values);
+  }
   if (vtk_ && records_ % spec_.vtk_every == 0) vtk_->write_frame(scene_, snapshot);
   ++records_;
 }
 
 void Recording::finish() {
   if (csv_) csv_->finish();
+  for (const auto& arrays : arrays_)
+    arrays->finish();
 }
 
 std::vector<WrittenFile> Recording::files() const {
   std::vector<WrittenFile> files;
   if (csv_) files.push_back({spec_.prefix + ".csv", "csv", csv_->rows()});
+  for (const auto& arrays : arrays_)
+    files.push_back({spec_.prefix + arrays->extension(), arrays->kind(), arrays->rows()});
   if (vtk_) {
     files.push_back({spec_.prefix + ".pvd", "vtk", vtk_->frames()});
     files.push_back({spec_.prefix + "_vtk/", "vtk", vtk_->frames()});

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "engine/model/scene.h"
 #include "engine/run/observe.h"
+#include "tools/sinks/array_writer.h"
 #include "tools/sinks/csv.h"
 #include "tools/sinks/sink.h"
 #include "tools/sinks/vtk.h"
@@ -31,6 +33,7 @@ class Recording : public Sink {
   const RecordSpec& spec_;
   ChannelReader reader_;
   std::optional<CsvWriter> csv_;
+  std::vector<std::unique_ptr<ArrayWriter>> arrays_;  ///< HDF5
   std::optional<VtkWriter> vtk_;
   long records_ = 0;
 };
