@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config ccache
   libeigen3-dev libbullet-dev libassimp-dev libtinyxml2-dev libstb-dev
-  libsundials-dev libhdf5-dev
+  libsundials-dev libhdf5-dev libminizip-dev
   libegl-dev libopengl-dev libgl-dev libgl1-mesa-dri libegl-mesa0
   nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   ffmpeg fonts-dejavu-core

@@ -97,6 +97,7 @@ void read_record(Reading& r, const Node& node) {
     }
   record.csv = node.child("csv") != nullptr;
   record.hdf5 = node.child("hdf5") != nullptr;
+  record.npz = node.child("npz") != nullptr;
   if (const Node* vtk = node.child("vtk"))
     record.vtk_every = static_cast<int>(number_attribute(*vtk, "every", 1));
   r.scene.records.push_back(std::move(record));

@@ -57,7 +57,7 @@ const std::vector<Layer>& layers() {
       {"render/", join(model, {"engine/run/snapshot.h"}), join({"EGL/", "GL/", "stb/"}, kPosix)},
       {"tools/",
        {"engine/", "scenes/", "collision/", "render/"},
-       join({"CLI/", "fmt/", "hdf5.h", "nlohmann/", "tinyxml2.h", "xxhash.h"}, kPosix)},
+       join({"CLI/", "fmt/", "hdf5.h", "minizip/", "nlohmann/", "tinyxml2.h", "xxhash.h"}, kPosix)},
       {"tests/", {""}, {""}},
   };
   return all;

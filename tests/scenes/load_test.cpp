@@ -201,7 +201,7 @@ TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
   EXPECT_TRUE(load_text(text, lax).scene);
   EXPECT_EQ(error_codes(load_text(scene_text("",
                                              "<cprsim:record rate='1' prefix='p'><channel>"
-                                             "energy.total</channel><npz/></cprsim:record>"),
+                                             "energy.total</channel><gltf/></cprsim:record>"),
                                   lax)),
             std::vector<std::string>{"E520"});
 }

@@ -41,6 +41,7 @@ void Outputs::add_recordings(const Scene& scene) {
   for (const RecordSpec& spec : scene.records) {
     if (spec.csv) claim(spec.prefix + ".csv");
     if (spec.hdf5) claim(spec.prefix + ".h5");
+    if (spec.npz) claim(spec.prefix + ".npz");
     if (spec.vtk_every > 0) claim(spec.prefix + ".pvd");
     sinks_.push_back(std::make_unique<Recording>(scene, spec, folder_));
   }

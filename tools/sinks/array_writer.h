@@ -56,6 +56,8 @@ class ArrayWriter {
 std::unique_ptr<ArrayWriter> make_hdf5_writer(const std::filesystem::path& path,
                                               const Scene& scene);
 
+std::unique_ptr<ArrayWriter> make_npz_writer(const std::filesystem::path& path, const Scene& scene);
+
 /// Which library reads and writes HDF5, "1.10.8"; empty: this program was built without.
 std::string hdf5_version();
 

@@ -18,6 +18,7 @@ Recording::Recording(const Scene& scene, const RecordSpec& spec,
     : scene_(scene), spec_(spec), reader_(scene, spec.channels) {
   if (spec.csv) csv_.emplace(folder / (spec.prefix + ".csv"), spec.channels);
   if (spec.hdf5) arrays_.push_back(make_hdf5_writer(folder / (spec.prefix + ".h5"), scene));
+  if (spec.npz) arrays_.push_back(make_npz_writer(folder / (spec.prefix + ".npz"), scene));
   if (spec.vtk_every > 0) vtk_.emplace(folder, spec.prefix);
 }
 

@@ -33,7 +33,7 @@ class Recording : public Sink {
   const RecordSpec& spec_;
   ChannelReader reader_;
   std::optional<CsvWriter> csv_;
-  std::vector<std::unique_ptr<ArrayWriter>> arrays_;  ///< HDF5
+  std::vector<std::unique_ptr<ArrayWriter>> arrays_;  ///< HDF5, NPZ
   std::optional<VtkWriter> vtk_;
   long records_ = 0;
 };
