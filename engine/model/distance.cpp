@@ -82,21 +82,60 @@ Distance to_revolution(const Profile2& corners, const Vec3& x) {
   return out;
 }
 
-}  // namespace
-
-bool has_distance(ShapeKind kind) {
-  switch (kind) {
-    case ShapeKind::kBox:
-    case ShapeKind::kSphere:
-    case ShapeKind::kCylinder:
-    case ShapeKind::kCapsule:
-    case ShapeKind::kCone:
-    case ShapeKind::kPlane:
-      return true;
-    default:
-      return false;
+/// t of (2) plus the least a_i², which `above` is the others' rise over. (2) falls and bends
+/// upwards: from a t that is too small Newton's steps never pass the root. Halving is for
+/// round-off.
+double ellipsoid_parameter(const Vec3& above, const Vec3& ax) {
+  double low = (ax - above).maxCoeff(), high = ax.norm();
+  double t = low;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 below = above + Vec3::Constant(t), y = ax.cwiseQuotient(below);
+    const double f = y.squaredNorm() - 1, slope = -2 * y.cwiseProduct(y).cwiseQuotient(below).sum();
+    (f > 0 ? low : high) = t;
+    double next = t - f / slope;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (std::abs(next - t) <= 1e-15 * t) return next;
+    t = next;
   }
+  return t;
 }
+
+/// With the nearest point y and the axes a_i,  y_i = a_i² x_i / (a_i² + t),
+///   sum_i (a_i x_i / (a_i² + t))² = 1,  n ~ y_i / a_i²,  d = n . (x - y)               (2)
+///   H = (I + d S)^-1 S,  S = P diag(1 / a_i²) P / |y_i / a_i²|,  P = I - n n^T          (3)
+/// S being the curvature of the surface at y (Eberly, Distance from a point to an ellipsoid, 2011).
+Distance to_ellipsoid(const Vec3& axes, const Vec3& x) {
+  const Vec3 a2 = axes.cwiseAbs2(), ax = axes.cwiseProduct(x.cwiseAbs());
+  int thin = 0;
+  const double least = a2.minCoeff(&thin);
+  const Vec3 above = a2 - Vec3::Constant(least);
+  // deep inside the middle plane t is as small as can be, and what is nearest lies above and below
+  Vec3 flat = Vec3::Zero();
+  bool middle = true;
+  for (int i = 0; i < 3; ++i) {
+    if (above[i] > 0) flat[i] = a2[i] * x[i] / above[i];
+    middle = middle && (above[i] > 0 || ax[i] == 0);
+  }
+  const double rest = 1 - flat.cwiseQuotient(axes).squaredNorm();
+  Vec3 y = flat;
+  if (middle && rest > 0) {
+    y[thin] = axes[thin] * std::sqrt(rest);
+  } else {
+    y = a2.cwiseProduct(x).cwiseQuotient(above + Vec3::Constant(ellipsoid_parameter(above, ax)));
+  }
+  const Vec3 slope = y.cwiseQuotient(a2);
+  Distance out;
+  out.n = slope.normalized();
+  out.d = out.n.dot(x - y);
+  const Mat3 P = Mat3::Identity() - out.n * out.n.transpose();
+  const Mat3 S = P * a2.cwiseInverse().asDiagonal() * P / slope.norm();
+  const Mat3 spread = Mat3::Identity() + out.d * S;
+  // where surface normals meet, deep inside, there is no curvature
+  if (spread.determinant() > 1e-3) out.H = spread.inverse() * S;
+  return out;
+}
+
+}  // namespace
 
 Distance distance_to(const ShapeSpec& shape, const Vec3& x) {
   const double a = shape.size.x(), b = 0.5 * shape.size.y();
@@ -111,6 +150,8 @@ Distance distance_to(const ShapeSpec& shape, const Vec3& x) {
       return to_revolution({Vec2(0, -b), Vec2(a, -b), Vec2(a, b), Vec2(0, b)}, x);
     case ShapeKind::kCone:
       return to_revolution({Vec2(0, -b), Vec2(a, -b), Vec2(0, b), Vec2(0, b)}, x);
+    case ShapeKind::kEllipsoid:
+      return to_ellipsoid(shape.size, x);
     default:
       break;
   }
@@ -120,11 +161,12 @@ Distance distance_to(const ShapeSpec& shape, const Vec3& x) {
   return plane;
 }
 
+Distance carried(const Distance& at, const Mat3& R) {
+  return {at.d, R * at.n, R * at.H * R.transpose()};
+}
+
 Distance distance_to(const ShapeSpec& shape, const Pose& X_WC, const Vec3& x) {
-  Distance out = distance_to(shape, X_WC.inverse() * x);
-  out.n = X_WC.R * out.n;
-  out.H = X_WC.R * out.H * X_WC.R.transpose();
-  return out;
+  return carried(distance_to(shape, X_WC.inverse() * x), X_WC.R);
 }
 
 }  // namespace cprsim

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "engine/model/distance.h"
-
 namespace cprsim {
 namespace {
 
@@ -14,7 +12,7 @@ bool touches(const RodSpec& rod) {
 
 bool touched_by_rods(const Scene& scene, const BodySpec& body) {
   return std::any_of(body.colliders.begin(), body.colliders.end(), [&](const ColliderSpec& c) {
-    return has_distance(c.shape.kind) &&
+    return c.shape.kind != ShapeKind::kEmpty &&
            std::any_of(scene.rods.begin(), scene.rods.end(), [&](const RodSpec& rod) {
              return touches(rod) && may_touch(rod.surface, c.surface);
            });

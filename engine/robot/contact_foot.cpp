@@ -110,7 +110,7 @@ Distance RodContacts::distance_from(const Obstacle& obstacle, const Vec3& x) con
   const Surface& surface = obstacle.surface;
   const Pose X_WC =
       obstacle.body < 0 ? surface.X_WC : robot_.body_pose(obstacle.body) * surface.X_WC;
-  return distance_to(*surface.shape, X_WC, x);
+  return distance_to(surface, X_WC, x);
 }
 
 /// Puts the other side of a contact where it is nearest. @return whether it was elsewhere

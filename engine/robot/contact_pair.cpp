@@ -75,12 +75,11 @@ MovingBody moving_body(const RigidBody& body, const StageRates& rates, const Pos
   return out;
 }
 
-PairRows rows_with_body(const RodContact& contact, const ShapeSpec& shape, const Pose& X_BC,
-                        const MovingBody& body, double radius, const ContactEnds& ends,
-                        const ContactScale& scale) {
+PairRows rows_with_body(const RodContact& contact, const Surface& surface, const MovingBody& body,
+                        double radius, const ContactEnds& ends, const ContactScale& scale) {
   PairRows rows;
   const Vec3 x = contact_point(contact.xi, ends.h, ends.node), y = x + contact.lever;
-  rows.at = distance_to(shape, body.X * X_BC, x);
+  rows.at = distance_to(surface, body.X * surface.X_WC, x);
   const Vec3& n = rows.at.n;
   // velocity of the body's point at y and its derivatives
   Vec3 v;

@@ -44,10 +44,9 @@ struct PairRows {
   Vec3 slip = Vec3::Zero();
 };
 
-/// @param X_BC the surface's frame on the body.
-PairRows rows_with_body(const RodContact& contact, const ShapeSpec& shape, const Pose& X_BC,
-                        const MovingBody& body, double radius, const ContactEnds& ends,
-                        const ContactScale& scale);
+/// @param surface with its frame on the body.
+PairRows rows_with_body(const RodContact& contact, const Surface& surface, const MovingBody& body,
+                        double radius, const ContactEnds& ends, const ContactScale& scale);
 
 struct RodSide {
   ContactEnds ends;

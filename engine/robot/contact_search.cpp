@@ -237,7 +237,10 @@ bool RodContacts::slide(Rod& rod, RodContact& contact) const {
   }
   const double at = static_cast<double>(contact.cell) + contact.xi;
   const double by = static_cast<double>(cell) + xi - at;
-  const bool elsewhere = std::abs(by) * length(rod, cell) > kSlide * rod.radius;
+  const Vec3 t = tangent(rod, cell, xi);
+  const double way = std::abs(by) * length(rod, cell);
+  const double turn = way * std::abs(t.dot(distance(rod, obstacle, cell, xi).H * t));
+  const bool elsewhere = way > kSlide * rod.radius || turn > kTurn;
   if (elsewhere) leap(rod, contact, by, cell, xi);
   contact.cell = cell;
   contact.xi = xi;

@@ -47,7 +47,7 @@ RodContacts::RodContacts(Robot& robot) : robot_(robot) {
 }
 
 // Not of the bodies that hold the rod: what a joint joins is meant to be together.
-void RodContacts::add_colliders(Rod& rod) const {
+void RodContacts::add_colliders(Rod& rod) {
   const Scene& scene = *robot_.scene;
   const RobotRod& own = *rod.rod;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -56,17 +56,28 @@ void RodContacts::add_colliders(Rod& rod) const {
                                            (own.tip_held && own.tip.body == place.body));
     if (place.body == LinkPlace::kFree || holds) continue;
     for (const ColliderSpec& collider : scene.bodies[i].colliders) {
-      if (!has_distance(collider.shape.kind) || !may_touch(collider.surface, own.spec->surface))
+      if (collider.shape.kind == ShapeKind::kEmpty ||
+          !may_touch(collider.surface, own.spec->surface))
         continue;
       Obstacle obstacle;
       obstacle.name = scene.bodies[i].name + "::" + collider.name;
-      obstacle.surface = {&collider.shape, place.X * collider.X_BC};
+      obstacle.surface = {&collider.shape, place.X * collider.X_BC, mesh_of(collider.shape)};
       obstacle.plane = collider.shape.kind == ShapeKind::kPlane;
       obstacle.body = std::max(place.body, -1);
       if (friction_) obstacle.friction = collider.surface.friction * own.spec->surface.friction;
       rod.obstacles.push_back(obstacle);
     }
   }
+}
+
+/// Its tree, built once.
+const MeshDistance* RodContacts::mesh_of(const ShapeSpec& shape) {
+  if (shape.kind != ShapeKind::kMesh) return nullptr;
+  const std::vector<MeshSpec>& meshes = robot_.scene->meshes;
+  meshes_.resize(meshes.size());
+  const auto index = static_cast<std::size_t>(shape.mesh);
+  if (!meshes_[index]) meshes_[index] = std::make_unique<MeshDistance>(meshes[index]);
+  return meshes_[index].get();
 }
 
 // Rods that neither touch anything nor are touched are left alone.

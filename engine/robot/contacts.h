@@ -17,6 +17,7 @@
 // as an echo among the other's contacts.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,9 @@ namespace cprsim {
 /// Depth that a scene tolerates, over the rod's radius.
 constexpr double kContactTolerance = 1e-3;
 
-/// Of the radius: how far a contact may have slid along its rod before it is moved after.
-constexpr double kSlide = 1e-3;
+/// How far a contact may have slid along its rod before it is moved after: of the radius, and as a
+/// turn of the normal there.
+constexpr double kSlide = 1e-3, kTurn = 1e-5;
 
 class RodContacts {
  public:
@@ -130,7 +132,8 @@ class RodContacts {
     return scan.near[cell * rod.obstacles.size() + obstacle];
   }
 
-  void add_colliders(Rod& rod) const;
+  void add_colliders(Rod& rod);
+  const MeshDistance* mesh_of(const ShapeSpec& shape);
   void add_other_rods();
   void give_surfaces(Rod& rod);
   Foot foot(const Rod& other, const Vec3& x) const;
@@ -160,6 +163,8 @@ class RodContacts {
   void apply(const std::vector<Change>& changes);
 
   Robot& robot_;
+  std::vector<std::unique_ptr<MeshDistance>>
+      meshes_;              ///< of the scene's, those that rods may touch
   std::vector<int> index_;  ///< Robot::rods → rods_
   bool friction_ = false;
   std::vector<Rod> rods_;

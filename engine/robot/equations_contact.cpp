@@ -82,9 +82,9 @@ void Equations::evaluate_pairs(ProblemResidual& r) {
     if (contact.body >= 0) {
       const auto b = static_cast<std::size_t>(contact.body);
       const Surface& surface = side.surfaces()[static_cast<std::size_t>(contact.surface)];
-      pair.rows = rows_with_body(contact, *surface.shape, surface.X_WC,
-                                 moving_body(robot_.bodies[b], rates_, slip_from_[b]), own.radius,
-                                 own.ends, side.contact_scale());
+      pair.rows =
+          rows_with_body(contact, surface, moving_body(robot_.bodies[b], rates_, slip_from_[b]),
+                         own.radius, own.ends, side.contact_scale());
       pair.arm = x + contact.lever - robot_.bodies[b].p;
       wrench_[b] += wrench_on_body(pair.arm, contact.force);
     } else {

@@ -13,6 +13,11 @@ Mat3 projected_by_n(const Vec3& n, const Vec3& a) {
 
 }  // namespace
 
+Distance distance_to(const Surface& surface, const Pose& X_WC, const Vec3& x) {
+  if (!surface.mesh) return distance_to(*surface.shape, X_WC, x);
+  return carried((*surface.mesh)(X_WC.inverse() * x), X_WC.R);
+}
+
 GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
                    const ContactScale& scale) {
   const Mat3 P = Mat3::Identity() - n * n.transpose();
@@ -87,7 +92,7 @@ ContactRows contact_rows(const RodContact& contact, const Surface& surface, doub
                          const ContactEnds& ends, const ContactScale& scale) {
   ContactRows rows;
   rows.slip = contact_velocity(contact.xi, contact.lever, ends);
-  rows.at = distance_to(*surface.shape, surface.X_WC, contact_point(contact.xi, ends.h, ends.node));
+  rows.at = distance_to(surface, surface.X_WC, contact_point(contact.xi, ends.h, ends.node));
   const GripRows row = grip_rows(contact, rows.at.d - radius, rows.at.n, rows.slip, scale);
   rows.value = row.value;
   rows.by_force = row.by_force;

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "engine/model/distance.h"
+#include "engine/model/mesh_distance.h"
 #include "engine/rod/cell.h"
 #include "engine/rod/rod_end.h"
 
@@ -39,8 +40,12 @@ enum class ContactRole { kOwn, kShared, kEcho };
 /// A solid that a rod may touch.
 struct Surface {
   const ShapeSpec* shape = nullptr;
-  Pose X_WC;
+  Pose X_WC;                           ///< in the world, or on the body that carries it
+  const MeshDistance* mesh = nullptr;  ///< if the shape is one
 };
+
+/// Of a point x of the world from a surface whose frame is at X_WC there.
+Distance distance_to(const Surface& surface, const Pose& X_WC, const Vec3& x);
 
 struct RodContact {
   int surface = -1;  ///< index into the rod's surfaces

@@ -2,7 +2,6 @@
 // Whether the contacts that a scene with rods asks for can be carried out.
 #include <algorithm>
 
-#include "engine/model/distance.h"
 #include "engine/model/flight.h"
 #include "scenes/loader/reading.h"
 
@@ -69,11 +68,6 @@ class ContactCheck {
       return;
     }
     obstacles_ = true;
-    if (!has_distance(collider.shape.kind))
-      complain(collider.place, kCollisionCaret,
-               "rods cannot touch the shape of " + name + " in this version",
-               "available: plane, box, sphere, capsule, cylinder, cone; or give the rods "
-               "<without>contact</without>");
     if (collider.surface.restitution > 0)
       r_.report.at(Severity::kNote, "W592", collider.place, kCollisionCaret,
                    "the restitution of " + name +

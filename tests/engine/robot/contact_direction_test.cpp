@@ -19,6 +19,25 @@ ShapeSpec ball() {
   return shape;
 }
 
+ShapeSpec egg() {
+  ShapeSpec shape;
+  shape.kind = ShapeKind::kEllipsoid;
+  shape.size = {0.3, 0.2, 0.35};
+  return shape;
+}
+
+/// Its sides, edges and corners face the rods.
+MeshSpec octahedron() {
+  MeshSpec mesh;
+  for (int i = 0; i < 6; ++i)
+    mesh.positions.emplace_back(((i % 2 == 0 ? 0.3 : -0.3) * Vec3::Unit(i / 2)).cast<float>());
+  for (unsigned x : {0U, 1U})
+    for (unsigned y : {2U, 3U})
+      for (unsigned z : {4U, 5U})
+        mesh.triangles.push_back((x + y + z) % 2 == 0 ? std::array{x, y, z} : std::array{y, x, z});
+  return mesh;
+}
+
 RodContact contact_at(std::size_t cell, double xi, Grip grip, Numbers& numbers) {
   RodContact contact;
   contact.surface = 0;
@@ -44,9 +63,9 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip) {
       contact_at(2, 0.8, grip, numbers), contact_at(4, 0, grip, numbers)};
 }
 
-double slope_error(Grip grip, bool dynamic, double h, unsigned seed) {
-  const ShapeSpec shape = ball();
-  const std::vector<Surface> surfaces{{&shape, {Mat3::Identity(), {0.9, 0.7, 1.2}}}};
+double slope_error(Grip grip, bool dynamic, double h, unsigned seed,
+                   const ShapeSpec& shape = ball(), const MeshDistance* mesh = nullptr) {
+  const std::vector<Surface> surfaces{{&shape, {Mat3::Identity(), {0.9, 0.7, 1.2}}, mesh}};
   Scene scene = chain_of_rods(EndJoint::kRevolute, EndJoint::kUniversal);
   for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kRotaryInertia})
     scene.effects.set(e, true);
@@ -71,6 +90,19 @@ TEST(ContactDirection, IsExactForEveryGrip) {
       EXPECT_LT(slope_error(grip, false, 0, seed), kSlopeTolerance) << static_cast<int>(grip);
       EXPECT_LT(slope_error(grip, true, 1. / 100, seed), kSlopeTolerance) << static_cast<int>(grip);
     }
+}
+
+TEST(ContactDirection, IsExactOnEveryShape) {
+  const MeshDistance mesh(octahedron());
+  ASSERT_TRUE(mesh.closed());
+  ShapeSpec shape;
+  shape.kind = ShapeKind::kMesh;
+  for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
+    for (unsigned seed = 1; seed <= 3; ++seed)
+      for (bool dynamic : {false, true}) {
+        EXPECT_LT(slope_error(grip, dynamic, 0.01, seed, egg()), kSlopeTolerance);
+        EXPECT_LT(slope_error(grip, dynamic, 0.01, seed, shape, &mesh), kSlopeTolerance);
+      }
 }
 
 // Contacts and segments' starts recombine the same columns.
