@@ -5,44 +5,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/outline.h"
+
 namespace cprsim {
 
 namespace {
 
 constexpr double kSmallestWidth = 1.2;  // pixels; with 4 samples a thinner line breaks into dots
 
-/// A point of the section's outline and its outward normal, in section axes.
-struct OutlinePoint {
-  Vec2 p, n;
-};
-
-std::vector<OutlinePoint> ellipse(double a, double b, int sides) {
-  std::vector<OutlinePoint> outline;
-  for (int k = 0; k <= sides; ++k) {
-    const double t = 2 * std::numbers::pi * k / sides, c = std::cos(t), s = std::sin(t);
-    outline.push_back({{a * c, b * s}, Vec2(b * c, a * s).normalized()});
-  }
-  return outline;
-}
-
-std::vector<OutlinePoint> rectangle(double width, double height) {
-  const double x = 0.5 * width, y = 0.5 * height;
-  return {{{x, -y}, {1, 0}},   {{x, y}, {1, 0}},   {{x, y}, {0, 1}},
-          {{-x, y}, {0, 1}},   {{-x, y}, {-1, 0}}, {{-x, -y}, {-1, 0}},
-          {{-x, -y}, {0, -1}}, {{x, -y}, {0, -1}}, {{x, -y}, {1, 0}}};
-}
-
 std::vector<OutlinePoint> outline_of(const Tube& tube, double pixels) {
   // an error of the polygon of 1/8 pixel is invisible: cos(pi / sides) = 1 - 1 / (8 r)
   const int sides = std::clamp(static_cast<int>(2 * std::sqrt(4 + 5 * pixels)), 8, 48);
-  const Vec2& size = tube.section.size;
-  if (tube.section.shape == SectionShape::kRectangle && size.minCoeff() > 0) {
-    return rectangle(size.x(), size.y());
-  }
-  if (tube.section.shape == SectionShape::kEllipse && size.minCoeff() > 0) {
-    return ellipse(size.x(), size.y(), sides);
-  }
-  return ellipse(tube.radius, tube.radius, sides);
+  return section_outline(tube.section, tube.radius, sides);
 }
 
 bool is_round(const Tube& tube) {

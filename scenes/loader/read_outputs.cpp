@@ -11,6 +11,7 @@ namespace cprsim {
 
 namespace {
 
+constexpr double kUsualFps = 30;  // of an animation
 constexpr double kMostFrames = 1e5;
 constexpr double kMostSamples = 1e8;
 
@@ -100,6 +101,11 @@ void read_record(Reading& r, const Node& node) {
   record.npz = node.child("npz") != nullptr;
   if (const Node* vtk = node.child("vtk"))
     record.vtk_every = static_cast<int>(number_attribute(*vtk, "every", 1));
+  if (const Node* gltf = node.child("gltf")) {
+    record.gltf_fps = number_attribute(*gltf, "fps", kUsualFps);
+    if (r.scene.simulation.duration * record.gltf_fps > kMostFrames)
+      r.report.error("E509", *gltf, "the animation would have more than 100000 keyframes");
+  }
   r.scene.records.push_back(std::move(record));
 }
 

@@ -199,9 +199,9 @@ TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
   LoadOptions lax;
   lax.lax = true;
   EXPECT_TRUE(load_text(text, lax).scene);
-  EXPECT_EQ(error_codes(load_text(scene_text("",
-                                             "<cprsim:record rate='1' prefix='p'><channel>"
-                                             "energy.total</channel><gltf/></cprsim:record>"),
+  EXPECT_EQ(error_codes(load_text(scene_text("<cprsim:rod name='other' class='steel'><base "
+                                             "attached_to='base' joint='fixed'/><length>0.2"
+                                             "</length><disks/></cprsim:rod>"),
                                   lax)),
             std::vector<std::string>{"E520"});
 }

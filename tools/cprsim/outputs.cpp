@@ -8,6 +8,7 @@
 #include "tools/cprsim/stopwatch.h"
 #include "tools/sinks/film_sink.h"
 #include "tools/sinks/frame_sink.h"
+#include "tools/sinks/gltf_sink.h"
 #include "tools/sinks/output_file.h"
 #include "tools/sinks/recording.h"
 #include "tools/sinks/still_sink.h"
@@ -44,6 +45,10 @@ void Outputs::add_recordings(const Scene& scene) {
     if (spec.npz) claim(spec.prefix + ".npz");
     if (spec.vtk_every > 0) claim(spec.prefix + ".pvd");
     sinks_.push_back(std::make_unique<Recording>(scene, spec, folder_));
+    if (spec.gltf_fps > 0) {
+      const std::string name = spec.prefix + ".glb";
+      sinks_.push_back(std::make_unique<GltfSink>(scene, spec.gltf_fps, claim(name), name));
+    }
   }
 }
 

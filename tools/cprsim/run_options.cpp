@@ -32,7 +32,7 @@ std::variant<RunOptions, int> parse_run_options(const Words& words) {
   line.text("--video", options.video, "FILE", "Film the run into this MP4 file");
   line.flag("--no-video", options.no_video, "Do not film, whatever the scene says");
   line.exclude("--no-video", "--video");
-  line.flag("--no-record", options.no_record, "Write no recordings (CSV, HDF5, NPZ, VTK)");
+  line.flag("--no-record", options.no_record, "Write no recordings (CSV, HDF5, NPZ, VTK, glTF)");
   line.each("--still", "FILE[@TIME]", "A PNG picture at this time, or of the last state",
             [&](const std::string& text) { options.stills.push_back(to_still(text)); });
   line.number("--max-wall", options.max_wall, "Stop after this many seconds of wall time",

@@ -14,7 +14,7 @@ namespace cprsim {
 /// Something a sink leaves on disk, for run.json and the closing lines.
 struct WrittenFile {
   std::string name;  ///< relative to the output folder; ends in '/' for a folder
-  std::string kind;  ///< csv, hdf5, npz, vtk, video, still
+  std::string kind;  ///< csv, hdf5, npz, vtk, gltf, video, still
   long count = 0;    ///< rows or frames
 };
 
