@@ -47,8 +47,9 @@ double root(const Cubic& c, const Vec3& x, double lower, double upper) {
   return xi;
 }
 
-/// Nearest point of one cell: samples tell where to look for roots. @return squared distance
-double nearest_in(const Cubic& c, const Vec3& x, double& xi) {
+/// Nearest point of one cell beyond `first`: samples tell where to look for roots. @return squared
+/// distance
+double nearest_in(const Cubic& c, const Vec3& x, double first, double& xi) {
   constexpr int kSamples = 4;
   double best = std::numeric_limits<double>::infinity();
   const auto look = [&](double at) {
@@ -58,36 +59,42 @@ double nearest_in(const Cubic& c, const Vec3& x, double& xi) {
     xi = at;
   };
   const auto f = [&](double at) { return (c.at(at) - x).dot(c.slope(at)); };
-  look(0);
+  look(first);
   look(1);
-  double before = f(0);
+  double before = f(first), last = first;
   for (int i = 1; i <= kSamples; ++i) {
-    const double at = static_cast<double>(i) / kSamples, now = f(at);
-    if (before < 0 && now > 0) look(root(c, x, at - 1.0 / kSamples, at));
+    const double at = first + (1 - first) * i / kSamples, now = f(at);
+    if (before < 0 && now > 0) look(root(c, x, last, at));
     if (now == 0) look(at);
     before = now;
+    last = at;
   }
   return best;
 }
 
 }  // namespace
 
-RodContacts::Foot RodContacts::foot(const Rod& other, const Vec3& x) const {
+// Among what lies beyond the arc length `from`.
+RodContacts::Foot RodContacts::foot(const Rod& other, const Vec3& x, double from) const {
   const std::vector<NodeState>& nodes = other.side->contact_nodes();
-  double best = std::numeric_limits<double>::infinity();
-  for (const NodeState& node : nodes)
-    best = std::min(best, (position_of(node) - x).norm());
+  const std::vector<double>& grid = other.side->contact_grid();
+  const double start = from / other.rod->length;
+  double best = std::numeric_limits<double>::infinity(), least = best;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (grid[k] >= start) best = std::min(best, (position_of(nodes[k]) - x).norm());
   Foot out;
-  double least = std::numeric_limits<double>::infinity();
+  out.at.d = least;
   for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
+    if (grid[c + 1] <= start) continue;
     const double h = length(other, c);
+    const double first = std::max(0.0, (start - grid[c]) / (grid[c + 1] - grid[c]));
     // a curve through both ends leads no nearer than this
     const double bound = 0.5 * ((position_of(nodes[c]) - x).norm() +
                                 (position_of(nodes[c + 1]) - x).norm() - 1.1 * h);
     if (bound > best) continue;
     const Cubic cubic(nodes[c], nodes[c + 1], h);
     double xi = 0;
-    const double d = std::sqrt(nearest_in(cubic, x, xi));
+    const double d = std::sqrt(nearest_in(cubic, x, first, xi));
     best = std::min(best, d);
     if (d >= least) continue;
     least = d;
@@ -105,20 +112,33 @@ RodContacts::Foot RodContacts::foot(const Rod& other, const Vec3& x) const {
   return out;
 }
 
-Distance RodContacts::distance_from(const Obstacle& obstacle, const Vec3& x) const {
-  if (obstacle.rod >= 0) return foot(rods_[static_cast<std::size_t>(obstacle.rod)], x).at;
+/// Of a rod's point on a rod that is an obstacle to it.
+RodContacts::Foot RodContacts::foot(const Rod& rod, const Obstacle& obstacle, std::size_t cell,
+                                    double xi) const {
+  const Rod& other = rods_[static_cast<std::size_t>(obstacle.rod)];
+  double from = 0;
+  if (obstacle.itself) {
+    const double arc = rod.side->contact_grid()[cell] * rod.rod->length;
+    from = arc + (xi > 0 ? xi * length(rod, cell) : 0) + rod.apart;
+  }
+  return foot(other, point(rod, cell, xi), from);
+}
+
+Distance RodContacts::distance(const Rod& rod, std::size_t o, std::size_t cell, double xi) const {
+  const Obstacle& obstacle = rod.obstacles[o];
+  if (obstacle.rod >= 0) return foot(rod, obstacle, cell, xi).at;
   const Surface& surface = obstacle.surface;
   const Pose X_WC =
       obstacle.body < 0 ? surface.X_WC : robot_.body_pose(obstacle.body) * surface.X_WC;
-  return distance_to(surface, X_WC, x);
+  return distance_to(surface, X_WC, point(rod, cell, xi));
 }
 
 /// Puts the other side of a contact where it is nearest. @return whether it was elsewhere
 bool RodContacts::place_foot(const Rod& rod, RodContact& contact) const {
-  const int index = rod.obstacles[static_cast<std::size_t>(contact.surface)].rod;
-  if (index < 0) return false;
-  const Rod& other = rods_[static_cast<std::size_t>(index)];
-  const Foot now = foot(other, point(rod, contact.cell, contact.xi));
+  const Obstacle& obstacle = rod.obstacles[static_cast<std::size_t>(contact.surface)];
+  if (obstacle.rod < 0) return false;
+  const Rod& other = rods_[static_cast<std::size_t>(obstacle.rod)];
+  const Foot now = foot(rod, obstacle, contact.cell, contact.xi);
   const double by = static_cast<double>(now.cell) + now.xi -
                     static_cast<double>(contact.other_cell) - contact.other_xi;
   const bool elsewhere = contact.other_rod < 0 || now.cell != contact.other_cell ||

@@ -37,11 +37,6 @@ Vec3 RodContacts::point(const Rod& rod, std::size_t cell, double xi) const {
   return contact_point(xi, length(rod, cell), ends);
 }
 
-Distance RodContacts::distance(const Rod& rod, std::size_t obstacle, std::size_t cell,
-                               double xi) const {
-  return distance_from(rod.obstacles[obstacle], point(rod, cell, xi));
-}
-
 Vec3 RodContacts::tangent(const Rod& rod, std::size_t cell, double xi) const {
   const std::vector<NodeState>& nodes = rod.side->contact_nodes();
   const bool end = cell + 1 == nodes.size();
@@ -155,17 +150,17 @@ void RodContacts::scan(Rod& rod) const {
   for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
     const Obstacle& obstacle = rod.obstacles[o];
     for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
-      // a distance changes no faster than one walks
-      double d =
-          0.5 * (distance(rod, o, c, 0).d + distance_from(obstacle, position_of(nodes[c + 1])).d -
-                 1.1 * length(rod, c));
+      // a distance changes no faster than one walks, that of a rod from itself twice as fast: what
+      // is far along it begins later as one walks on, until nothing is left
+      const double walk = (obstacle.itself ? 2.2 : 1.1) * length(rod, c);
+      const double here = distance(rod, o, c, 0).d, there = distance(rod, o, c + 1, 0).d;
+      double d = std::isfinite(there) ? 0.5 * (here + there - walk) : here - walk;
       double xi = 0.5;
       if (d < rod.radius) d = lowest(rod, o, c, xi);
       out.clearance = std::min(out.clearance, d - rod.radius);
       Near& near = out.near[c * rod.obstacles.size() + o];
       near = {d, distance(rod, o, c, xi).n, 0};
-      if (obstacle.rod >= 0)
-        near.foot = foot(rods_[static_cast<std::size_t>(obstacle.rod)], point(rod, c, xi)).cell;
+      if (obstacle.rod >= 0) near.foot = foot(rod, obstacle, c, xi).cell;
     }
   }
   if (!robot_.rods_meet) return;

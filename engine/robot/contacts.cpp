@@ -26,20 +26,24 @@ double order(const RodContact& contact) {
 RodContacts::RodContacts(Robot& robot) : robot_(robot) {
   const Scene& scene = *robot.scene;
   friction_ = scene.effects.has(Effect::kFriction);
-  if (!scene.effects.has(Effect::kContact)) return;
+  const bool contact = scene.effects.has(Effect::kContact),
+             self_contact = scene.effects.has(Effect::kSelfContact);
   index_.assign(robot.rods.size(), -1);
   for (std::size_t r = 0; r < robot.rods.size(); ++r) {
     RobotRod& rod = robot.rods[r];
-    if (rod.spec->lacks("contact")) continue;
     Rod mine;
+    mine.touches_others = contact && !rod.spec->lacks("contact");
+    mine.touches_itself = self_contact && !rod.spec->lacks("self_contact");
+    if (!mine.touches_others && !mine.touches_itself) continue;
     mine.rod = &rod;
     mine.index = r;
     mine.side = rod.model->touching();
     mine.radius = rod.section.half_width;
-    add_colliders(mine);
+    if (mine.touches_others) add_colliders(mine);
     rods_.push_back(std::move(mine));
   }
   add_other_rods();
+  add_rods_themselves();
   for (std::size_t i = 0; i < rods_.size(); ++i) {
     index_[rods_[i].index] = static_cast<int>(i);
     give_surfaces(rods_[i]);
@@ -82,11 +86,15 @@ const MeshDistance* RodContacts::mesh_of(const ShapeSpec& shape) {
 
 // Rods that neither touch anything nor are touched are left alone.
 void RodContacts::add_other_rods() {
+  const auto may_meet = [](const Rod& a, const Rod& b) {
+    return a.touches_others && b.touches_others &&
+           may_touch(a.rod->spec->surface, b.rod->spec->surface);
+  };
   std::vector<char> met(rods_.size(), 0);
   for (std::size_t a = 0; a < rods_.size(); ++a) {
-    if (!rods_[a].obstacles.empty()) met[a] = 1;
+    if (!rods_[a].obstacles.empty() || rods_[a].touches_itself) met[a] = 1;
     for (std::size_t b = a + 1; b < rods_.size(); ++b)
-      if (may_touch(rods_[a].rod->spec->surface, rods_[b].rod->spec->surface)) met[a] = met[b] = 1;
+      if (may_meet(rods_[a], rods_[b])) met[a] = met[b] = 1;
   }
   std::vector<Rod> kept;
   for (std::size_t a = 0; a < rods_.size(); ++a)
@@ -94,14 +102,34 @@ void RodContacts::add_other_rods() {
   rods_ = std::move(kept);
   for (std::size_t a = 0; a < rods_.size(); ++a)
     for (std::size_t b = a + 1; b < rods_.size(); ++b) {
+      if (!may_meet(rods_[a], rods_[b])) continue;
       const SurfaceSpec &mine = rods_[a].rod->spec->surface, &other = rods_[b].rod->spec->surface;
-      if (!may_touch(mine, other)) continue;
       Obstacle obstacle;
       obstacle.name = rods_[b].rod->spec->name;
       obstacle.rod = static_cast<int>(b);
       if (friction_) obstacle.friction = mine.friction * other.friction;
       rods_[a].obstacles.push_back(obstacle);
     }
+}
+
+void RodContacts::add_rods_themselves() {
+  // diameters, and cells
+  constexpr double kDiameters = 4, kCells = 1.5;
+  for (std::size_t i = 0; i < rods_.size(); ++i) {
+    Rod& rod = rods_[i];
+    if (!rod.touches_itself || !rod.side) continue;
+    double longest = 0;
+    for (std::size_t c = 0; c + 1 < rod.side->contact_grid().size(); ++c)
+      longest = std::max(longest, length(rod, c));
+    rod.apart = std::max(kDiameters * 2 * rod.radius, kCells * longest);
+    Obstacle obstacle;
+    obstacle.name = "itself";
+    obstacle.rod = static_cast<int>(i);
+    obstacle.itself = true;
+    const double friction = rod.rod->spec->surface.friction;
+    if (friction_) obstacle.friction = friction * friction;
+    rod.obstacles.push_back(obstacle);
+  }
 }
 
 void RodContacts::give_surfaces(Rod& rod) {
@@ -338,8 +366,9 @@ std::string RodContacts::overlap() {
         const double gap = lowest(rod, o, c, xi) - rod.radius;
         if (gap < -kContactTolerance * rod.radius)
           return "rod '" + rod.rod->spec->name + "' begins " +
-                 (rod.obstacles[o].rod < 0 ? "inside '" : "in the way of '") +
-                 rod.obstacles[o].name + "'";
+                 (rod.obstacles[o].itself    ? "in its own way"
+                  : rod.obstacles[o].rod < 0 ? "inside '" + rod.obstacles[o].name + "'"
+                                             : "in the way of '" + rod.obstacles[o].name + "'");
       }
   }
   return {};

@@ -14,7 +14,10 @@
 //
 // To a rod, another rod is an obstacle like any: the tube around its curved centreline. Of two rods
 // the first of the scene looks for the points; its force acts on the other, with its sign changed,
-// as an echo among the other's contacts.
+// as an echo among the other's contacts. To itself a rod is an obstacle, too (effect self_contact):
+// to the point at arc length s, what lies beyond s + a, a being a few diameters or more than a
+// cell, so that each pair of parts is looked at once. A rod that is bent no tighter than twice its
+// radius does not come near itself within a.
 #pragma once
 
 #include <memory>
@@ -72,6 +75,7 @@ class RodContacts {
     bool plane = false;
     int body = -1;  ///< index into Robot::bodies, if on one
     int rod = -1;   ///< index into rods_, if one
+    bool itself = false;
 
     bool fixed() const { return body < 0 && rod < 0; }
   };
@@ -98,7 +102,7 @@ class RodContacts {
     double from = 0, by = 0, to = 0;
   };
 
-  /// The nearest point of a rod's centreline.
+  /// The nearest point of a rod's centreline; infinitely far where there is none.
   struct Foot {
     std::size_t cell = 0;
     double xi = 0;
@@ -110,6 +114,8 @@ class RodContacts {
     std::size_t index = 0;  ///< in Robot::rods
     TouchingRod* side = nullptr;
     double radius = 0;
+    bool touches_others = false, touches_itself = false;
+    double apart = 0;  ///< a, m
     std::vector<Obstacle> obstacles;
     Scan scan, start;
     std::vector<RodContact> before;
@@ -135,9 +141,10 @@ class RodContacts {
   void add_colliders(Rod& rod);
   const MeshDistance* mesh_of(const ShapeSpec& shape);
   void add_other_rods();
+  void add_rods_themselves();
   void give_surfaces(Rod& rod);
-  Foot foot(const Rod& other, const Vec3& x) const;
-  Distance distance_from(const Obstacle& obstacle, const Vec3& x) const;
+  Foot foot(const Rod& other, const Vec3& x, double from) const;
+  Foot foot(const Rod& rod, const Obstacle& obstacle, std::size_t cell, double xi) const;
   double passed(const Rod& rod, const Scan& since, std::size_t obstacle, std::size_t cell) const;
   bool place_foot(const Rod& rod, RodContact& contact) const;
   void update_echoes();

@@ -14,10 +14,6 @@ bool round_section(const SectionSpec& section) {
   return section.shape == SectionShape::kCircle || section.shape == SectionShape::kAnnulus;
 }
 
-bool touches(const RodSpec& rod) {
-  return std::find(rod.without.begin(), rod.without.end(), "contact") == rod.without.end();
-}
-
 class ContactCheck {
  public:
   explicit ContactCheck(Reading& r)
@@ -25,6 +21,8 @@ class ContactCheck {
 
   void run() {
     const Scene& scene = r_.scene;
+    obstacles_ = std::any_of(scene.rods.begin(), scene.rods.end(),
+                             [&](const RodSpec& rod) { return touches_itself(rod); });
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       for (const ColliderSpec& collider : scene.bodies[b].colliders)
         if (met(collider)) check(collider, scene.bodies[b].name, !flying_[b] || among_rods_[b]);
@@ -38,14 +36,23 @@ class ContactCheck {
       complain(scene.simulation.place, 19, "contact of rods is not available in a <planar> scene",
                "leave <planar> out");
     for (const RodSpec& rod : scene.rods)
-      if (touches(rod) && !round_section(rod.section))
+      if ((touches(rod) || touches_itself(rod)) && !round_section(rod.section))
         complain(
             rod.place, kRodCaret,
             "contact of rods is available for round sections only: '" + rod.name + "' has another",
-            "give the rod <without>contact</without>");
+            "give the rod <without>contact</without>" +
+                std::string(touches_itself(rod) ? " and <without>self_contact</without>" : ""));
   }
 
  private:
+  bool touches(const RodSpec& rod) const {
+    return r_.scene.effects.has(Effect::kContact) && !rod.lacks("contact");
+  }
+
+  bool touches_itself(const RodSpec& rod) const {
+    return r_.scene.effects.has(Effect::kSelfContact) && !rod.lacks("self_contact");
+  }
+
   void complain(const Place& place, int caret, const std::string& what, const std::string& hint) {
     r_.report.at(Severity::kError, "E520", place, caret, what).suggestion = hint;
   }
@@ -82,7 +89,9 @@ class ContactCheck {
 }  // namespace
 
 void check_contact(Reading& r) {
-  if (r.scene.effects.has(Effect::kContact) && !r.scene.rods.empty()) ContactCheck(r).run();
+  const bool asked =
+      r.scene.effects.has(Effect::kContact) || r.scene.effects.has(Effect::kSelfContact);
+  if (asked && !r.scene.rods.empty()) ContactCheck(r).run();
 }
 
 }  // namespace cprsim

@@ -83,7 +83,8 @@ void check_effect_data(Reading& r, const Node& world) {
       r.report.missing("E503", node, "rod '" + rod.name + "' has no density: give a <material>");
   }
   const auto& asked = scene.effects.asked_at;
-  if (scene.effects.has(Effect::kFriction) && !scene.effects.has(Effect::kContact))
+  if (scene.effects.has(Effect::kFriction) && !scene.effects.has(Effect::kContact) &&
+      !scene.effects.has(Effect::kSelfContact))
     r.report.at(Severity::kWarning, "W503", asked[static_cast<std::size_t>(Effect::kFriction)], 9,
                 "friction is listed, contact is not: there is nothing to rub");
   if (damping && scene.rods.empty())

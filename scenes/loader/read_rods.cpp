@@ -337,7 +337,7 @@ void read_rods(Reading& r, const Node&) {
         rod.look = read_look(visual->child("material"), {});
       if (const Node* surface = part(chain, "surface")) {
         rod.surface = read_surface(surface);
-        if (!r.scene.effects.has(Effect::kContact))
+        if (!r.scene.effects.has(Effect::kContact) && !r.scene.effects.has(Effect::kSelfContact))
           r.report.note("W511", *surface,
                         "<surface> of a rod is given, contact is not among the effects");
       }

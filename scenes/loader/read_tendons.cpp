@@ -113,12 +113,16 @@ void read_tendons(Reading& r) {
 void check_displaced(Reading& r, const TendonSpec& tendon, const DriveSpec& drive) {
   if (drive.quantity != DriveQuantity::kDisplacement || tendon.rod < 0) return;
   const RodSpec& rod = r.scene.rods[at(tendon.rod)];
-  if (r.scene.effects.has(Effect::kContact) && !rod.lacks("contact"))
+  const Effects& effects = r.scene.effects;
+  if ((effects.has(Effect::kContact) && !rod.lacks("contact")) ||
+      (effects.has(Effect::kSelfContact) && !rod.lacks("self_contact")))
     r.report
         .at(Severity::kError, "E520", drive.place, 13,
             "a tendon of given displacement along a rod that may touch something is not available "
             "in this version")
-        .suggestion = "give the rod <without>contact</without>, or drive the tension";
+        .suggestion =
+        "give the rod <without>contact</without> (self_contact too, if the scene lists it), or "
+        "drive the tension";
 }
 
 // A rod that is fed carries other parts of a tendon through its base, and a tendon that nothing

@@ -64,7 +64,18 @@ RodContact echo_of(const RodContact& contact, const Place& here) {
   return echo;
 }
 
-enum class Others { kBodies, kRods, kBoth };
+enum class Others { kBodies, kRods, kBoth, kItself };
+
+/// Contacts of a rod with itself, at nodes and in cells.
+void touch_itself(std::vector<RodContact>& contacts, Grip grip, Numbers& numbers) {
+  const auto at = [&](std::size_t cell, double xi) { return contact_at(cell, xi, grip, numbers); };
+  contacts = {with_rod(at(0, 0.4), {1, 3, 2, 0.7}, numbers),
+              with_rod(at(1, 0), {1, 5, 4, 0.5}, numbers),
+              with_rod(at(1, 0.6), {1, 4, 3, 0}, numbers)};
+  contacts.push_back(echo_of(contacts[0], {1, 0}));
+  contacts.push_back(echo_of(contacts[2], {1, 2}));
+  contacts.push_back(echo_of(contacts[1], {1, 1}));
+}
 
 /// Contacts of the middle rod with what stands still, with both bodies, and with both other rods,
 /// at nodes, in cells, and several in one cell.
@@ -77,6 +88,10 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip, Others
   std::vector<RodContact>& first = robot.rods[0].model->touching()->contacts();
   std::vector<RodContact>& middle = robot.rods[1].model->touching()->contacts();
   std::vector<RodContact>& last = robot.rods[2].model->touching()->contacts();
+  if (others == Others::kItself) {
+    touch_itself(middle, grip, numbers);
+    return;
+  }
   const bool bodies = others != Others::kRods, rods = others != Others::kBodies;
   const auto meet = [&](const RodContact& contact, int rod, std::vector<RodContact>& other,
                         std::size_t cell, double xi) {
@@ -187,7 +202,8 @@ TEST_P(PairDirection, ActionIsReaction) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ContactPair, PairDirection,
-                         testing::Values(Others::kBodies, Others::kRods, Others::kBoth));
+                         testing::Values(Others::kBodies, Others::kRods, Others::kBoth,
+                                         Others::kItself));
 
 }  // namespace
 }  // namespace cprsim
