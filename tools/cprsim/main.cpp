@@ -42,7 +42,7 @@ Commands
   solve modes path         equilibria, stability, natural frequencies, folds and branches
   identify workspace       fit values to measurements; what a robot reaches
   sweep effects            what accuracy and what each effect costs in time
-  compare plot             a run against a reference trajectory; pictures
+  compare plot export      a run against a reference trajectory; pictures; other formats
   explain doctor           what a code means, what this machine can do
 
 Options
@@ -76,6 +76,7 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"sweep", sweep_command},
                                Command{"effects", effects_command},
                                Command{"plot", plot_command},
+                               Command{"export", export_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};
 

@@ -26,7 +26,7 @@ Json list_of(const Vector& v) {
   return list;
 }
 
-std::string word(std::uint32_t value) {
+std::string little_endian(std::uint32_t value) {
   std::string bytes(sizeof value, '\0');
   std::memcpy(bytes.data(), &value, sizeof value);
   return bytes;
@@ -213,8 +213,10 @@ void Glb::write(OutputFile& file, const Spool& keyframes, float first_time, floa
   if (total > std::numeric_limits<std::uint32_t>::max())
     throw OutputError("cannot write " + file.path().string() +
                       ": larger than glTF allows (4 GiB); ask for fewer frames");
-  const auto size = [](std::uint64_t bytes) { return word(static_cast<std::uint32_t>(bytes)); };
-  file.write("glTF" + word(2) + size(total));
+  const auto size = [](std::uint64_t bytes) {
+    return little_endian(static_cast<std::uint32_t>(bytes));
+  };
+  file.write("glTF" + little_endian(2) + size(total));
   file.write(size(text.size()) + "JSON" + text);
   if (binary == 0) return;
   file.write(size(padded(binary)) + std::string("BIN\0", 4) + d.bytes);

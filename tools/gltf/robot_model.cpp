@@ -26,13 +26,13 @@ Pose turned() {
 }
 
 /// Display to linear (IEC 61966-2-1).
-float linear(std::uint8_t display) {
+float to_linear(std::uint8_t display) {
   const double c = display / 255.0;
   return static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
 }
 
-Eigen::Vector4f linear(const std::array<std::uint8_t, 4>& c) {
-  return {linear(c[0]), linear(c[1]), linear(c[2]), static_cast<float>(c[3]) / 255.0F};
+Eigen::Vector4f to_linear(const std::array<std::uint8_t, 4>& c) {
+  return {to_linear(c[0]), to_linear(c[1]), to_linear(c[2]), static_cast<float>(c[3]) / 255.0F};
 }
 
 /// Of a highlight as wide as Blinn and Phong's with this exponent: alpha² = 2 / (shininess + 2),
@@ -50,17 +50,17 @@ int add_part(Glb& glb, const std::string& name, const Part& part) {
   for (const Vertex& vertex : vertices) {
     mesh.positions.push_back(vertex.position);
     mesh.normals.push_back(vertex.normal);
-    if (!plain) mesh.colors.push_back(linear(vertex.color));
+    if (!plain) mesh.colors.push_back(to_linear(vertex.color));
   }
   mesh.indices = part.mesh.indices;
   GlbMaterial material{
       {1, 1, 1, static_cast<float>(part.look.opacity)}, roughness_of(part.look), !part.closed};
-  if (plain) material.color = linear(vertices.front().color);
+  if (plain) material.color = to_linear(vertices.front().color);
   return glb.add_mesh(name, mesh, glb.add_material(material));
 }
 
 /// How many joints do for its tube: rods that are wound up at the start get more.
-int cells_of(const RodSample& rod) {
+int tube_cells(const RodSample& rod) {
   double turn = 0;
   for (std::size_t i = 1; i < rod.points.size(); ++i) {
     const Vec3 a = rod.points[i - 1].rotation.col(2), b = rod.points[i].rotation.col(2);
@@ -108,7 +108,7 @@ void RobotModel::add_bodies(const Scene& scene, const Snapshot& first) {
 void RobotModel::add_rod(const Scene& scene, std::size_t index, const RodSample& rod) {
   const RodSpec& spec = scene.rods[index];
   const int root = glb_.add_node({spec.name + " joints", world_});
-  const int cells = cells_of(rod);
+  const int cells = tube_cells(rod);
   std::vector<int> joints;
   std::vector<Pose> poses, inverse_binds;
   std::vector<double> s;
@@ -124,7 +124,7 @@ void RobotModel::add_rod(const Scene& scene, std::size_t index, const RodSample&
 
   // a skinned mesh is where its joints are: its own node stands outside, so that no tree moves it
   const auto add_tube = [&](const std::string& name, const GlbMesh& mesh, const Look& look) {
-    const GlbMaterial material{linear(to_bytes(look.diffuse.cast<float>(), look.opacity)),
+    const GlbMaterial material{to_linear(to_bytes(look.diffuse.cast<float>(), look.opacity)),
                                roughness_of(look), false};
     glb_.add_node({name, -1, {}, glb_.add_mesh(name, mesh, glb_.add_material(material)), skin});
   };

@@ -10,8 +10,8 @@ namespace cprsim {
 
 namespace {
 
-constexpr std::size_t kBlockFrames = 64;  ///< kept in memory
-constexpr double kRoundOff = 1e-9;        ///< of a period, as in recording.cpp
+constexpr std::size_t kBlockFrames = 64;    ///< kept in memory
+constexpr double kKeyframeRoundOff = 1e-9;  ///< of a period, as in recording.cpp
 
 }  // namespace
 
@@ -30,11 +30,11 @@ void GltfSink::begin(const Snapshot& first) {
 
 void GltfSink::resume(const Snapshot& now) {
   start(now);
-  next_ = static_cast<long>(std::floor(now.time * fps_ + kRoundOff)) + 1;
+  next_ = static_cast<long>(std::floor(now.time * fps_ + kKeyframeRoundOff)) + 1;
 }
 
 void GltfSink::step(const Snapshot& before, const Snapshot& now) {
-  while (static_cast<double>(next_) <= now.time * fps_ + kRoundOff) {
+  while (static_cast<double>(next_) <= now.time * fps_ + kKeyframeRoundOff) {
     const double time = static_cast<double>(next_) / fps_;
     Snapshot snapshot = interpolate(before, now, time);
     snapshot.time = time;

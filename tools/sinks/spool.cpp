@@ -16,7 +16,7 @@ namespace cprsim {
 
 namespace {
 
-[[noreturn]] void fail(const char* doing, const std::filesystem::path& folder) {
+[[noreturn]] void fail_in(const char* doing, const std::filesystem::path& folder) {
   throw OutputError(std::string("cannot ") + doing + " a temporary file in " + folder.string() +
                     ": " + std::strerror(errno));
 }
@@ -41,7 +41,7 @@ Spool::Spool(const std::filesystem::path& folder, std::vector<std::size_t> width
     row_bytes_ += width;
   }
   descriptor_ = open_nameless(folder.empty() ? "." : folder);
-  if (descriptor_ < 0) fail("create", folder_);
+  if (descriptor_ < 0) fail_in("create", folder_);
 }
 
 Spool::~Spool() {
@@ -55,7 +55,7 @@ void Spool::append(std::size_t rows, const std::vector<const void*>& data) {
     for (std::size_t left = widths_[i] * rows; left > 0;) {
       const ssize_t written = ::pwrite(descriptor_, from, left, static_cast<off_t>(at));
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail("write", folder_);
+      if (written < 0) fail_in("write", folder_);
       from += written;
       at += static_cast<std::uint64_t>(written);
       left -= static_cast<std::size_t>(written);
@@ -76,7 +76,7 @@ std::size_t Spool::read(std::size_t array, std::uint64_t position, void* to,
     const ssize_t got =
         ::pread(descriptor_, to, static_cast<std::size_t>(size), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail("read", folder_);
+    if (got <= 0) fail_in("read", folder_);
     return static_cast<std::size_t>(got);
   }
 }
