@@ -109,9 +109,9 @@ TEST_F(Hdf5, OfARunThatWasKilledHoldsTheBlocksThatWereFull) {
   // as it lies on the disk at this moment
   std::filesystem::copy_file(folder_ / "run.h5.part", folder_ / "copy.h5");
   const Hdf5Input file(folder_ / "copy.h5");
-  EXPECT_EQ(file.shape("time"), Shape{2048});
-  EXPECT_EQ(file.shape("rods/rod/m"), (Shape{2048, 5, 3}));
-  EXPECT_EQ(file.numbers("time").back(), 2047.0 / 6000);
+  EXPECT_EQ(file.shape("time"), Shape{2304});
+  EXPECT_EQ(file.shape("rods/rod/m"), (Shape{2304, 5, 3}));
+  EXPECT_EQ(file.numbers("time").back(), 2303.0 / 6000);
   recording.finish();
   EXPECT_EQ(Hdf5Input(folder_ / "run.h5").shape("time"), Shape{2401});
 }

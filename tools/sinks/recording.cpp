@@ -2,6 +2,7 @@
 #include "tools/sinks/recording.h"
 
 #include <cmath>
+#include <exception>
 
 namespace cprsim {
 
@@ -67,9 +68,19 @@ void Recording::record(const Snapshot& snapshot) {
 }
 
 void Recording::finish() {
-  if (csv_) csv_->finish();
+  // each is completed even if another cannot be
+  std::exception_ptr complaint;
+  const auto complete = [&](auto& writer) {
+    try {
+      writer.finish();
+    } catch (...) {
+      if (!complaint) complaint = std::current_exception();
+    }
+  };
+  if (csv_) complete(*csv_);
   for (const auto& arrays : arrays_)
-    arrays->finish();
+    complete(*arrays);
+  if (complaint) std::rethrow_exception(complaint);
 }
 
 std::vector<WrittenFile> Recording::files() const {
