@@ -13,7 +13,7 @@ namespace {
 // what a converged solve leaves
 constexpr double kNotice = 0.1 * kContactTolerance;
 // of a cell: contacts between nodes stay this far from them
-constexpr double kEdge = 1e-3;
+constexpr double kEdge = 1e-5;
 // turn of the surface's normal along a cell: less is flat
 constexpr double kFlat = 1e-6;
 // of a cell: a node this near to a contact needs none of its own
@@ -43,11 +43,22 @@ Vec3 RodContacts::tangent(const Rod& rod, std::size_t cell, double xi) const {
   return rotation_of(nodes[end || xi < 0.5 ? cell : cell + 1]).col(2);
 }
 
-/// Whether a surface does not curve away along the rod: contact is a line there, not a point.
-bool RodContacts::flat(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const {
+/// How far a surface curves away from a tangent within a cell along the rod, either side of its
+/// middle.
+double RodContacts::sagitta(const Rod& rod, std::size_t obstacle, std::size_t cell,
+                            double xi) const {
   const Vec3 t = tangent(rod, cell, xi);
-  const std::size_t last = rod.side->contact_nodes().size() - 2;
-  return t.dot(distance(rod, obstacle, cell, xi).H * t) * length(rod, std::min(cell, last)) < kFlat;
+  const double h = length(rod, std::min(cell, rod.side->contact_nodes().size() - 2));
+  return t.dot(distance(rod, obstacle, cell, xi).H * t) * h * h / 8;
+}
+
+/// Whether contact is a line, not a point: a surface does not curve away along the rod, or a shape
+/// not by more within a cell than is tolerated.
+bool RodContacts::flat(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const {
+  const double h = length(rod, std::min(cell, rod.side->contact_nodes().size() - 2));
+  const double away = sagitta(rod, obstacle, cell, xi);
+  return 8 * away < kFlat * h ||
+         (rod.obstacles[obstacle].rod < 0 && away < kContactTolerance * rod.radius);
 }
 
 // Samples, then golden section around the lowest.
@@ -189,7 +200,10 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
   contact.cell = cell;
   contact.xi = xi;
   contact.friction = rod.obstacles[obstacle].friction;
-  contact.grip = contact.friction > 0 ? Grip::kStick : Grip::kSmooth;
+  // what comes rubs before it may stick: where a rod was led to is where it slid to. But one that
+  // nothing else holds would be free to go
+  const bool loose = !rod.rod->base_held && !rod.rod->tip_held;
+  contact.grip = contact.friction > 0 && loose ? Grip::kStick : Grip::kSmooth;
   contact.lever = -rod.radius * distance(rod, obstacle, cell, xi).n;
   contact.axis = tangent(rod, cell, xi);
   if (rod.obstacles[obstacle].fixed()) return contact;
@@ -221,14 +235,24 @@ bool RodContacts::slide(Rod& rod, RodContact& contact) const {
     if (xi < kEdge || xi > 1 - kEdge) return false;
   } else {
     lowest(rod, obstacle, cell, xi);
+    // over the node only if what is nearest lies behind it
+    double beyond = 0;
     if (xi > 1 - kEdge / 2 && cell + 1 < cells) {
-      ++cell;
-      xi = kEdge;
+      lowest(rod, obstacle, cell + 1, beyond);
+      xi = 1 - kEdge / 2;
+      if (beyond > kEdge / 2) {
+        ++cell;
+        xi = kEdge;
+      }
     } else if (xi < kEdge / 2 && cell > 0) {
-      --cell;
-      xi = 1 - kEdge;
+      lowest(rod, obstacle, cell - 1, beyond);
+      xi = kEdge / 2;
+      if (beyond < 1 - kEdge / 2) {
+        --cell;
+        xi = 1 - kEdge;
+      }
     }
-    xi = std::clamp(xi, kEdge, 1.0);
+    xi = std::clamp(xi, kEdge / 2, 1.0);
   }
   const double at = static_cast<double>(contact.cell) + contact.xi;
   const double by = static_cast<double>(cell) + xi - at;
@@ -329,7 +353,8 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
       const bool inside = xi[c] > kEdge && xi[c] < 1 - kEdge;
       if (!(low[c] < noticed) || !inside) continue;
       const double ends = std::min(distance(rod, o, c, 0).d, distance(rod, o, c, 1).d);
-      if (low[c] < ends - fine && !taken(c, o)) add(o, c, xi[c], low[c]);
+      const double away = flat(rod, o, c, xi[c]) ? sagitta(rod, o, c, xi[c]) : 0;
+      if (low[c] < ends - fine - away && !taken(c, o)) add(o, c, xi[c], low[c]);
     }
   }
 }

@@ -155,6 +155,7 @@ class RodContacts {
   Distance distance(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;
   double lowest(const Rod& rod, std::size_t obstacle, std::size_t cell, double& xi) const;
   Vec3 tangent(const Rod& rod, std::size_t cell, double xi) const;
+  double sagitta(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;
   bool flat(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;
   double moved(const Rod& rod, const Scan& since) const;
   bool far_away(const Rod& rod) const;

@@ -137,8 +137,10 @@ ContactNode ShootingRod::contact_node(const NodeState& state, std::size_t node) 
   return out;
 }
 
+// Of a limp rope the weight is what forces are measured by, not the bending stiffness.
 ContactScale ShootingRod::contact_scale() const {
-  return {scale_.length, scale_.force,
+  const double weight = section_.weighing_mass() * forcing_.gravity.norm() * scale_.length;
+  return {scale_.length, std::max(scale_.force, weight),
           rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length,
           options_.extension ? 0 : scale_.length / cells_ / section_.K_se.z()};
 }

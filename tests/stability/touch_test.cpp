@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rods that touch: at rest, at speed, across each other at any angle, and where they must not
+// begin.
+#include "engine/math/so3.h"
+#include "engine/run/simulation.h"
+#include "scenes/loader/load.h"
+#include "tests/stability/measure.h"
+
+namespace cprsim {
+namespace {
+
+Scene contact_scene(const std::string& name) {
+  LoadResult loaded =
+      load_scene(std::string(CPRSIM_SOURCE_DIR) + "/scenes/contact/" + name + ".xml");
+  EXPECT_TRUE(loaded.scene);
+  return *loaded.scene;
+}
+
+// N21: ten seconds on a floor, held by nothing.
+TEST(Touch, ARodLiesStillOnAFloor) {
+  Simulation simulation(contact_scene("rod_on_floor"));
+  simulation.start();
+  const RodSample begun = simulation.now().rods[0];
+  const double radius = 0.001, length = begun.length;
+  double sink = 0, drift = 0;
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    sink = std::max(sink, simulation.now().contact.penetration / radius);
+    for (const RodPoint& point : simulation.now().rods[0].points)
+      for (const RodPoint& was : begun.points)
+        if (point.s == was.s)
+          drift = std::max(drift, (point.position - was.position).head<2>().norm() / length);
+  }
+  EXPECT_EQ(simulation.status(), RunStatus::kDone);
+  measure("sink / r", sink, 1e-3);
+  measure("drift / L", drift, 1e-6);
+}
+
+// N22: 20 m/s onto a tenth of a millimetre.
+TEST(Touch, AThinSheetStopsAFastRod) {
+  Simulation simulation(contact_scene("thin_sheet"));
+  simulation.start();
+  double lowest = 1, gain = 0;
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    for (const RodPoint& point : simulation.now().rods[0].points)
+      lowest = std::min(lowest, point.position.z());
+    gain = std::max(gain, simulation.now().energy.balance);
+  }
+  EXPECT_EQ(simulation.status(), RunStatus::kDone);
+  // the sheet's top is at 0.05 mm
+  measure("depth / r", (0.00105 - lowest) / 0.001, 1e-3);
+  measure("energy gained, J", gain, 1e-6);
+}
+
+/// The force of crossing.xml at its end, the upper rod turned by `angle`.
+double pressed_across(double angle) {
+  Scene scene = contact_scene("crossing");
+  const Mat3 turn = exp_so3(Vec3(0, 0, angle));
+  for (JointSpec& joint : scene.joints) {
+    BodySpec& yoke = scene.bodies[static_cast<std::size_t>(joint.child)];
+    yoke.X_WB = {turn * yoke.X_WB.R, turn * yoke.X_WB.p};
+    joint.X_PJ = {turn * joint.X_PJ.R, turn * joint.X_PJ.p};
+  }
+  Simulation simulation(scene);
+  simulation.start();
+  while (simulation.status() == RunStatus::kRunning)
+    simulation.advance();
+  EXPECT_EQ(simulation.status(), RunStatus::kDone) << angle << ": " << simulation.failure();
+  return simulation.now().contact.force;
+}
+
+// N23: both rods give way by half, whatever the angle.
+TEST(Touch, CrossedRodsPressAlikeAtAnyAngle) {
+  const double square = pressed_across(0);
+  double change = 0;
+  for (int k = 1; k <= 8; ++k)
+    change = std::max(change, std::abs(pressed_across(k * std::acos(-1.0) / 18) / square - 1));
+  measure("change of the force from 90 to 10 degrees", change, 0.05);
+}
+
+// N25: half a radius inside, or wholly.
+TEST(Touch, ARodThatBeginsInsideIsNamed) {
+  for (const double depth : {0.5, 3.0}) {
+    Scene scene = contact_scene("rod_on_floor");
+    scene.rods[0].base.at.X_BF.p.z() -= depth * 0.001;
+    Simulation simulation(scene);
+    simulation.start();
+    EXPECT_EQ(simulation.status(), RunStatus::kFailed) << depth;
+    EXPECT_NE(simulation.failure().find("begins inside"), std::string::npos)
+        << simulation.failure();
+  }
+}
+
+}  // namespace
+}  // namespace cprsim
