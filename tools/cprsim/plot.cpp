@@ -217,7 +217,8 @@ int plot_command(const Words& words) {
       "  cprsim plot out/planar --path robot::platform.position\n"
       "  cprsim plot scene.xml --energy\n"
       "  cprsim plot scene.xml --shapes 12");
-  line.arguments("SOURCE", options.sources, "Folders of runs, CSV, HDF5 or TUM files, scenes", true);
+  line.arguments("SOURCE", options.sources, "Folders of runs, CSV, HDF5 or TUM files, scenes",
+                 true);
   line.list("-c,--channel", options.channels, "CHANNEL",
             "Over time (default: all that is recorded)");
   line.list("--path", options.paths, "POSITION", "The path of a position in a plane");

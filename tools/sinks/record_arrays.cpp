@@ -9,7 +9,7 @@ namespace cprsim {
 namespace {
 
 constexpr std::size_t kBlockBytes = 4 << 20;  ///< what a block may take
-constexpr std::size_t kMostRows = 128;       ///< lost at most when the process is killed
+constexpr std::size_t kMostRows = 128;        ///< lost at most when the process is killed
 
 /// In whose axes the components of a channel are given.
 std::string frame_of(const Channel& channel) {
