@@ -26,6 +26,7 @@ TEST(WithoutLibraries, WritingAndReadingNameThePackage) {
   expect_advice<TableError>("libhdf5-dev", [&] { read_series("run.h5"); });
   expect_advice<OutputError>("libminizip-dev", [&] { make_npz_writer("run.npz", scene); });
   EXPECT_EQ(hdf5_version(), "");
+  EXPECT_FALSE(writes_npz());
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ Json versions() {
           {"CLI11", CLI11_VERSION},
           {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                         NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
+          {"NPZ", writes_npz() ? "built in" : "not built in (libminizip-dev)"},
           {"HDF5", hdf5_version().empty() ? "not built in (libhdf5-dev)" : hdf5_version()}};
 }
 

@@ -61,4 +61,7 @@ std::unique_ptr<ArrayWriter> make_npz_writer(const std::filesystem::path& path, 
 /// Which library reads and writes HDF5, "1.10.8"; empty: this program was built without.
 std::string hdf5_version();
 
+/// Whether this program was built with what NumPy archives need.
+bool writes_npz();
+
 }  // namespace cprsim

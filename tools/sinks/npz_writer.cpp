@@ -98,4 +98,8 @@ std::unique_ptr<ArrayWriter> make_npz_writer(const std::filesystem::path& path,
   return std::make_unique<NpzWriter>(path, scene);
 }
 
+bool writes_npz() {
+  return true;
+}
+
 }  // namespace cprsim

@@ -11,4 +11,8 @@ std::unique_ptr<ArrayWriter> make_npz_writer(const std::filesystem::path& path, 
                     "again, or take <csv/>");
 }
 
+bool writes_npz() {
+  return false;
+}
+
 }  // namespace cprsim
