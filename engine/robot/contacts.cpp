@@ -268,10 +268,18 @@ ContactSample RodContacts::sample() {
       if (contacts[i].role == ContactRole::kEcho) continue;
       const Vec3& n = rows[i].at.n;
       const double pressure = n.dot(contacts[i].force);
+      ContactPoint at;
+      at.rod = static_cast<int>(rod.index);
+      at.position = point(rod, contacts[i].cell, contacts[i].xi) - rod.radius * n;
+      at.normal = n;
+      at.force = contacts[i].force;
+      at.slip = rows[i].slip - n.dot(rows[i].slip) * n;
+      at.gap = rows[i].at.d - rod.radius;
+      out.points.push_back(at);
       ++out.count;
       out.force += pressure;
       out.friction += (contacts[i].force - pressure * n).norm();
-      out.slip = std::max(out.slip, (rows[i].slip - n.dot(rows[i].slip) * n).norm());
+      out.slip = std::max(out.slip, at.slip.norm());
     }
   }
   return out;

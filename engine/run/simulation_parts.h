@@ -116,6 +116,7 @@ struct Simulation::Parts {
     sample.force = rods.force;
     sample.friction = rods.friction;
     sample.slip = rods.slip;
+    sample.points = rods.points;
   }
 
   /// A rod that begins inside an obstacle would be shot out of it.

@@ -37,11 +37,23 @@ struct SolverSample {
   double wall_time = 0;  ///< s, of that step
 };
 
+/// Where a rod touches: its surface's point, what acts there on the rod, and the other side's
+/// outward normal; world axes.
+struct ContactPoint {
+  int rod = 0;                   ///< index into Scene::rods; of two rods the first
+  Vec3 position = Vec3::Zero();  ///< m
+  Vec3 normal = Vec3::UnitZ();   ///< unit
+  Vec3 force = Vec3::Zero();     ///< N
+  Vec3 slip = Vec3::Zero();      ///< of the rod over the other, m/s; in quasi-statics m per step
+  double gap = 0;                ///< m
+};
+
 struct ContactSample {
   int count = 0;
-  double penetration = 0;          ///< deepest, m
-  double force = 0, friction = 0;  ///< sums of normal and tangential forces on rods, N
-  double slip = 0;                 ///< fastest of rods, m/s
+  double penetration = 0;            ///< deepest, m
+  double force = 0, friction = 0;    ///< sums of normal and tangential forces on rods, N
+  double slip = 0;                   ///< fastest of rods, m/s
+  std::vector<ContactPoint> points;  ///< of rods
 };
 
 struct Snapshot {

@@ -53,6 +53,12 @@ Expected expected_of(const HeldRod& rod, const HeldState& u) {
 
 void compare(const Snapshot& found, const Expected& expected, double tolerance) {
   EXPECT_NEAR(found.contact.force / expected.force, 1, tolerance);
+  double along = 0;
+  for (const ContactPoint& point : found.contact.points) {
+    along += point.force.dot(point.normal);
+    EXPECT_NEAR(point.gap, 0, 1e-8);
+  }
+  EXPECT_NEAR(along, found.contact.force, 1e-12 * found.contact.force);
   EXPECT_NEAR(found.rods[0].points.front().moment.y() / expected.moment, 1, tolerance);
   const Vec3& tip = found.rods[0].points.back().position;
   EXPECT_NEAR(tip.x(), expected.x, tolerance);

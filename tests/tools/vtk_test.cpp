@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <sstream>
 
 #include "tests/tools/synthetic.h"
 
@@ -83,6 +84,48 @@ TEST(Vtp, OfASceneWithoutRodsIsEmptyButWhole) {
   state.rods.clear();
   tinyxml2::XMLDocument document;
   EXPECT_EQ(document.Parse(to_vtp(scene, state).c_str()), tinyxml2::XML_SUCCESS);
+}
+
+/// The numbers of a <DataArray> that is text.
+std::vector<double> text_numbers(const tinyxml2::XMLElement* parent, const char* name) {
+  std::vector<double> values;
+  for (auto* array = parent->FirstChildElement("DataArray"); array != nullptr;
+       array = array->NextSiblingElement("DataArray")) {
+    if (!array->Attribute("Name", name)) continue;
+    std::istringstream text(array->GetText() ? array->GetText() : "");
+    for (double value = 0; text >> value;)
+      values.push_back(value);
+  }
+  return values;
+}
+
+TEST(Vtp, HoldsThePointsWhereRodsTouch) {
+  Snapshot state = synthetic_state(0.3);
+  ContactPoint point;
+  point.rod = 1;
+  point.position = {0.1, 0.2, 0.3};
+  point.normal = Vec3::UnitY();
+  point.force = {0.5, 2, -0.25};
+  point.gap = -1e-9;
+  state.contact.points = {ContactPoint{}, point};
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(to_contacts_vtp(state).c_str()), tinyxml2::XML_SUCCESS);
+  const auto* piece = document.FirstChildElement("VTKFile")
+                          ->FirstChildElement("PolyData")
+                          ->FirstChildElement("Piece");
+  EXPECT_STREQ(piece->Attribute("NumberOfPoints"), "2");
+  const auto* data = piece->FirstChildElement("PointData");
+  EXPECT_EQ(text_numbers(piece->FirstChildElement("Points"), "position"),
+            (std::vector<double>{0, 0, 0, 0.1, 0.2, 0.3}));
+  EXPECT_EQ(text_numbers(data, "force"), (std::vector<double>{0, 0, 0, 0.5, 2, -0.25}));
+  EXPECT_EQ(text_numbers(data, "normal"), (std::vector<double>{0, 0, 1, 0, 1, 0}));
+  EXPECT_EQ(text_numbers(data, "gap"), (std::vector<double>{0, -1e-9}));
+  EXPECT_EQ(text_numbers(data, "rod"), (std::vector<double>{0, 1}));
+}
+
+TEST(Vtp, WithoutAContactHasNoPoints) {
+  tinyxml2::XMLDocument document;
+  EXPECT_EQ(document.Parse(to_contacts_vtp(synthetic_state(0)).c_str()), tinyxml2::XML_SUCCESS);
 }
 
 }  // namespace

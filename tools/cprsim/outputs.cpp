@@ -12,6 +12,7 @@
 #include "tools/sinks/output_file.h"
 #include "tools/sinks/recording.h"
 #include "tools/sinks/still_sink.h"
+#include "tools/sinks/vtk.h"
 
 namespace cprsim {
 
@@ -44,6 +45,7 @@ void Outputs::add_recordings(const Scene& scene) {
     if (spec.hdf5) claim(spec.prefix + ".h5");
     if (spec.npz) claim(spec.prefix + ".npz");
     if (spec.vtk_every > 0) claim(spec.prefix + ".pvd");
+    if (spec.vtk_every > 0 && writes_contacts(scene)) claim(spec.prefix + "_contacts.pvd");
     sinks_.push_back(std::make_unique<Recording>(scene, spec, folder_));
     if (spec.gltf_fps > 0) {
       const std::string name = spec.prefix + ".glb";

@@ -90,6 +90,8 @@ std::vector<WrittenFile> Recording::files() const {
     files.push_back({spec_.prefix + arrays->extension(), arrays->kind(), arrays->rows()});
   if (vtk_) {
     files.push_back({spec_.prefix + ".pvd", "vtk", vtk_->frames()});
+    if (vtk_->has_contacts())
+      files.push_back({spec_.prefix + "_contacts.pvd", "vtk", vtk_->frames()});
     files.push_back({spec_.prefix + "_vtk/", "vtk", vtk_->frames()});
   }
   return files;

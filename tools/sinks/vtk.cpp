@@ -15,10 +15,13 @@
 
 #include "tools/sinks/csv.h"
 #include "tools/sinks/output_file.h"
+#include "tools/sinks/vtk_points.h"
 
 namespace cprsim {
 
 namespace {
+
+constexpr char kContacts[] = "contacts_";
 
 static_assert(std::endian::native == std::endian::little, "to_vtp declares LittleEndian");
 
@@ -166,20 +169,47 @@ std::string to_vtp(const Scene& scene, const Snapshot& snapshot) {
   return xml.CStr();
 }
 
+bool writes_contacts(const Scene& scene) {
+  return !scene.rods.empty() &&
+         (scene.effects.has(Effect::kContact) || scene.effects.has(Effect::kSelfContact));
+}
+
+std::string to_contacts_vtp(const Snapshot& snapshot) {
+  std::vector<Vec3> positions;
+  PointArray normal{"normal", {}, 3}, force{"force", {}, 3}, slip{"slip", {}, 3}, gap{"gap", {}},
+      rod{"rod", {}};
+  const auto append = [](PointArray& array, const Vec3& v) {
+    array.values.insert(array.values.end(), v.data(), v.data() + 3);
+  };
+  for (const ContactPoint& point : snapshot.contact.points) {
+    positions.push_back(point.position);
+    append(normal, point.normal);
+    append(force, point.force);
+    append(slip, point.slip);
+    gap.values.push_back(point.gap);
+    rod.values.push_back(point.rod);
+  }
+  return to_points_vtp(positions, {normal, force, slip, gap, rod});
+}
+
 VtkWriter::VtkWriter(const std::filesystem::path& folder, std::string prefix)
     : folder_(folder), prefix_(std::move(prefix)) {
   std::error_code error;
-  std::filesystem::create_directories((folder_ / frame_name(0)).parent_path(), error);
+  std::filesystem::create_directories((folder_ / frame_name("", 0)).parent_path(), error);
   if (error) throw OutputError("cannot create " + folder_.string() + ": " + error.message());
 }
 
 void VtkWriter::write_frame(const Scene& scene, const Snapshot& snapshot) {
-  write_file(folder_ / frame_name(times_.size()), to_vtp(scene, snapshot));
+  has_contacts_ = writes_contacts(scene);
+  write_file(folder_ / frame_name("", times_.size()), to_vtp(scene, snapshot));
+  if (has_contacts_)
+    write_file(folder_ / frame_name(kContacts, times_.size()), to_contacts_vtp(snapshot));
   times_.push_back(snapshot.time);
-  rewrite_collection();
+  rewrite_collection(prefix_, "");
+  if (has_contacts_) rewrite_collection(prefix_ + "_contacts", kContacts);
 }
 
-void VtkWriter::rewrite_collection() const {
+void VtkWriter::rewrite_collection(const std::string& name, const std::string& part) const {
   tinyxml2::XMLPrinter xml;
   open_vtk_file(xml, "Collection");
   xml.OpenElement("Collection");
@@ -187,18 +217,18 @@ void VtkWriter::rewrite_collection() const {
     xml.OpenElement("DataSet");
     xml.PushAttribute("timestep", shortest(times_[i]).c_str());
     xml.PushAttribute("part", 0);
-    xml.PushAttribute("file", frame_name(i).c_str());
+    xml.PushAttribute("file", frame_name(part, i).c_str());
     xml.CloseElement();
   }
   xml.CloseElement();
   xml.CloseElement();
-  write_file(folder_ / (prefix_ + ".pvd"), xml.CStr());
+  write_file(folder_ / (name + ".pvd"), xml.CStr());
 }
 
-std::string VtkWriter::frame_name(std::size_t frame) const {
+std::string VtkWriter::frame_name(const std::string& part, std::size_t frame) const {
   const std::string digits = std::to_string(frame);
   const std::size_t zeros = digits.size() < 6 ? 6 - digits.size() : 0;
-  return prefix_ + "_vtk/" + std::string(zeros, '0') + digits + ".vtp";
+  return prefix_ + "_vtk/" + part + std::string(zeros, '0') + digits + ".vtp";
 }
 
 }  // namespace cprsim

@@ -57,13 +57,13 @@ std::string to_points_vtp(const std::vector<Vec3>& positions,
   xml.PushAttribute("NumberOfVerts", static_cast<std::int64_t>(positions.size()));
   xml.OpenElement("PointData");
   for (const PointArray& each : arrays) {
-    if (each.values.size() != positions.size()) {
+    if (each.values.size() != positions.size() * static_cast<std::size_t>(each.components)) {
       throw std::invalid_argument(each.name + " has another number of values than points");
     }
     std::string text;
     for (const double value : each.values)
       text += number(value) + ' ';
-    array(xml, each.name.c_str(), "Float64", 1, text);
+    array(xml, each.name.c_str(), "Float64", each.components, text);
   }
   xml.CloseElement();
   xml.OpenElement("Points");

@@ -11,7 +11,8 @@ namespace cprsim {
 
 struct PointArray {
   std::string name;
-  std::vector<double> values;  ///< one per point
+  std::vector<double> values;  ///< for each point as many as there are components
+  int components = 1;
 };
 
 /// One vertex per point; numbers are text that reads back exactly.
