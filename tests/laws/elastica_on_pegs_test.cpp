@@ -3,6 +3,9 @@
 // against the plane elastica of tests/laws/plane_elastica.h.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <stdexcept>
+
 #include "engine/run/simulation.h"
 #include "scenes/loader/load.h"
 #include "tests/laws/plane_elastica.h"
@@ -173,6 +176,50 @@ TEST(ElasticaOnPegs, ABoxIsABoxToo) {
     for (std::size_t i = 0; i < a.rods[0].points.size(); ++i)
       EXPECT_LT((a.rods[0].points[i].position - b.rods[0].points[i].position).norm(), 1e-9);
   }
+}
+
+ColliderSpec& collider_of(Scene& scene, ShapeKind kind) {
+  for (BodySpec& body : scene.bodies)
+    for (ColliderSpec& collider : body.colliders)
+      if (collider.shape.kind == kind) return collider;
+  throw std::invalid_argument("no such collider");
+}
+
+// The edge of a box that is driven down on a rod.
+TEST(ElasticaOnPegs, ADrivenBoxIsABoxToo) {
+  const LoadResult loaded = contact_scene("driven_cylinder");
+  ASSERT_TRUE(loaded.scene);
+  Scene box = *loaded.scene;
+  ColliderSpec& tool = collider_of(box, ShapeKind::kCylinder);
+  tool.shape.kind = ShapeKind::kBox;
+  tool.shape.size = {0.0625, 0.0625, 0.25};
+  tool.X_BC.R = tool.X_BC.R * Eigen::AngleAxisd(kPi / 4, Vec3::UnitZ()).toRotationMatrix();
+  Scene mesh = box;
+  ShapeSpec& shape = collider_of(mesh, ShapeKind::kBox).shape;
+  mesh.meshes.push_back(box_mesh(shape.size));
+  shape.kind = ShapeKind::kMesh;
+  shape.mesh = static_cast<int>(mesh.meshes.size()) - 1;
+  const Snapshot a = end_of(box), b = end_of(mesh);
+  EXPECT_GT(a.contact.force, 1);
+  EXPECT_NEAR(a.contact.force, b.contact.force, 1e-6 * a.contact.force);
+  const Vec3 &tip_a = a.rods[0].points.back().position, &tip_b = b.rods[0].points.back().position;
+  EXPECT_LT((tip_a - tip_b).norm(), 1e-7);
+}
+
+// A ball in flight that falls on rods, as an ellipsoid.
+TEST(ElasticaOnPegs, ARoundEllipsoidIsABall) {
+  const LoadResult loaded = contact_scene("ball_on_rods");
+  ASSERT_TRUE(loaded.scene);
+  Scene ball = *loaded.scene;
+  ball.simulation.duration = 0.2;
+  Scene egg = ball;
+  ShapeSpec& shape = collider_of(egg, ShapeKind::kSphere).shape;
+  shape.kind = ShapeKind::kEllipsoid;
+  shape.size = Vec3::Constant(shape.size.x());
+  const Snapshot a = end_of(ball), b = end_of(egg);
+  EXPECT_GT(a.contact.count, 0);
+  EXPECT_EQ(a.contact.count, b.contact.count);
+  EXPECT_NEAR(a.contact.force, b.contact.force, 1e-6 * a.contact.force);
 }
 
 }  // namespace
