@@ -23,6 +23,7 @@ enum class SectionShape { kCircle, kAnnulus, kRectangle, kEllipse };
 struct SectionSpec {
   SectionShape shape = SectionShape::kCircle;
   Vec2 size = Vec2::Zero();
+  double s = 0;  ///< where it is, as a fraction of the rod's length
   Place place;
 };
 
@@ -54,6 +55,12 @@ struct DragSpec {
   Place place;
 };
 
+/// Curvature about x and y and twist of the unloaded rod at s, a fraction of its length; 1/m.
+struct RestSample {
+  double s = 0;
+  Vec3 curvature = Vec3::Zero();
+};
+
 enum class EndJoint { kFree, kFixed, kRevolute, kBall, kUniversal };
 
 /// How a rod's end is held. The rod's end frame coincides with `at` when the joint's freedoms are
@@ -73,10 +80,14 @@ struct RodSpec {
   double length = 0;             ///< m, unloaded; a length drive replaces it
   std::optional<Method> method;  ///< where it is not the scene's
   SectionSpec section;
+  /// Where sections vary: two or more by ascending s, of one shape between different s; linear
+  /// between them, a step where two have the same s. `section` is the first then.
+  std::vector<SectionSpec> sections;
   std::optional<MaterialSpec> material;
   StiffnessSpec stiffness;
   /// Bending about x and y, twist: of the unloaded rod, section axes, 1/m.
   Vec3 rest_curvature = Vec3::Zero();
+  std::vector<RestSample> rest_samples;  ///< instead of it, from 0 to 1; a cubic spline between
   std::optional<DampingSpec> damping;
   std::optional<DragSpec> drag;
   bool gravity = true;

@@ -144,6 +144,10 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.X_WTip = robot.pose_of(rod.tip);
   plan.plane = robot.plane;
   plan.section = rod.section;
+  if (SectionsAlong::varies(*rod.spec)) {
+    plan.along = std::make_shared<SectionsAlong>(*rod.spec, has(Effect::kDrag));
+    plan.section = plan.along->at(0, 0);
+  }
   plan.length = rod.length;
   plan.extension = has(Effect::kExtension);
   plan.shear = has(Effect::kShear);

@@ -27,6 +27,11 @@ std::vector<double> arc_grid(int cells, std::vector<double> stations) {
   return grid;
 }
 
+std::vector<double> arc_grid(int cells, std::vector<double> stations, const SectionsAlong* along) {
+  if (along) stations.insert(stations.end(), along->breaks().begin(), along->breaks().end());
+  return arc_grid(cells, std::move(stations));
+}
+
 std::vector<std::size_t> nodes_at(const std::vector<double>& grid,
                                   const std::vector<double>& stations) {
   std::vector<std::size_t> nodes;

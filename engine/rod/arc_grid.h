@@ -5,11 +5,16 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/section/along.h"
+
 namespace cprsim {
 
 /// Node positions s / L, ascending from 0 to 1: nodes at the stations, and between them cells as
 /// equal as the count allows.
 std::vector<double> arc_grid(int cells, std::vector<double> stations);
+
+/// The same with nodes also where a rod's sections are not smooth. @param along may be null.
+std::vector<double> arc_grid(int cells, std::vector<double> stations, const SectionsAlong* along);
 
 /// The node nearest to each station.
 std::vector<std::size_t> nodes_at(const std::vector<double>& grid,

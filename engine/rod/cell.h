@@ -51,14 +51,20 @@ struct NodeState {
   double R[9], p[3], n[3], m[3];
 };
 
-/// What all cells of a rod share during one solve.
-struct CellModel {
-  const ArcTableau* table = nullptr;
-  double h = 0;  ///< cell length, m
+/// Coefficients of a section during one solve.
+struct CellSection {
   double C_bt[3] = {}, C_se[3] = {};
-  double k = 0;  ///< N/m²
+  double k = 0;         ///< N/m²
+  double rhoJ[3] = {};  ///< section inertia, kg m
+};
+
+/// What all cells of a rod share during one solve; its coefficients are those of all sections
+/// unless `sections` gives each stage its own.
+struct CellModel : CellSection {
+  const ArcTableau* table = nullptr;
+  double h = 0;                           ///< cell length, m
+  const CellSection* sections = nullptr;  ///< of the cell's stages, or null
   bool rotary = false;
-  double rhoJ[3] = {};      ///< section inertia, kg m
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
   FluidSection* fluid = nullptr;     ///< of the cell's stages, for the laws of a fluid

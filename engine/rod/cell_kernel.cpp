@@ -16,6 +16,24 @@ constexpr int round_up(int n) {
   return (n + 7) / 8 * 8;
 }
 
+/// Coefficients by stage: those of the model, or one set each.
+struct Sections {
+  const CellSection* first;
+  int next;
+
+  explicit Sections(const CellModel& M)
+      : first(M.sections ? M.sections : &M), next(M.sections ? 1 : 0) {}
+
+  const CellSection& operator[](int stage) const { return first[stage * next]; }
+};
+
+/// What evaluate_rotary() reads.
+struct RotaryModel {
+  const double* rhoJ;
+  double c_v, c_w;
+  bool body_rates;
+};
+
 inline V3 third_column(const double* R) {
   return {R[2], R[5], R[8]};
 }
@@ -25,6 +43,7 @@ inline V3 third_column(const double* R) {
 template <int S, CellLaw law>
 void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeState& end) {
   const ArcTableau& T = *M.table;
+  const Sections at(M);
   const double h = M.h;
   const M3 R0 = load_matrix(start.R);
   const V3 p0 = load(start.p), n0 = load(start.n), m0 = load(start.m);
@@ -51,7 +70,8 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       V3 n = n0;
       for (int k = 0; k < S; ++k)
         n = n + (h * T.a[j][k]) * load(st[k].b);
-      store(st[j].v, load(st[j].v0) + scaled(M.C_se, transposed_times(load_matrix(st[j].R), n)));
+      store(st[j].v,
+            load(st[j].v0) + scaled(at[j].C_se, transposed_times(load_matrix(st[j].R), n)));
     }
   } else if constexpr (law == CellLaw::kKirchhoff || law == CellLaw::kKirchhoffFluid) {
     for (int j = 0; j < S; ++j)
@@ -69,7 +89,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
     for (int k = 0; k < S; ++k)
       p = p + (h * T.a[j][k]) * tau[k];
     store(st[j].p, p);
-    n_s[j] = M.k * p + load(st[j].b);
+    n_s[j] = at[j].k * p + load(st[j].b);
     if constexpr (immersed(law)) {
       evaluate_fluid(M.c_v, M.c_w, p, third_column(st[j].R), M.fluid[j]);
       n_s[j] = n_s[j] + load(M.fluid[j].force);
@@ -83,7 +103,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
     store(st[j].n, n);
     m_s[j] = cross(n, tau[j]);
     if (M.rotary) {
-      evaluate_rotary(M, st[j]);
+      evaluate_rotary(RotaryModel{at[j].rhoJ, M.c_v, M.c_w, M.body_rates}, st[j]);
       m_s[j] = m_s[j] + load(st[j].torque);
     }
   }
@@ -101,9 +121,9 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       own_m = own_m - load(tendons.moment);
       own_n = own_n - load(tendons.force);
     }
-    store(st[j].residual_u, load(st[j].u) - load(st[j].u0) - scaled(M.C_bt, own_m));
+    store(st[j].residual_u, load(st[j].u) - load(st[j].u0) - scaled(at[j].C_bt, own_m));
     if constexpr (lifts_stretch(law))
-      store(st[j].residual_v, load(st[j].v) - load(st[j].v0) - scaled(M.C_se, own_n));
+      store(st[j].residual_v, load(st[j].v) - load(st[j].v0) - scaled(at[j].C_se, own_n));
   }
 
   V3 p = p0, n = n0, m = m0;
@@ -154,6 +174,7 @@ struct Linearization {
 
   // d tau = phi × tau + R dv
   void tangents(const CellModel& M, const CellStage* st) {
+    const Sections at(M);
     for (int j = 0; j < S; ++j) {
       set_zero(tau[j]);
       const M3 R = load_matrix(st[j].R);
@@ -163,12 +184,13 @@ struct Linearization {
         // dv = C R^T (dn - phi × n), dn that of the start
         Rows<W> moved = n0;
         add_cross(moved, load(st[j].n), phi[j]);
-        add_product(tau[j], 1.0, R * compliance_of_axes(R, M.C_se), moved);
+        add_product(tau[j], 1.0, R * compliance_of_axes(R, at[j].C_se), moved);
       }
     }
   }
 
   void forces(const CellModel& M, const CellStage* st) {
+    const Sections at(M);
     for (int j = 0; j < S; ++j) {
       p[j] = p0;
       for (int k = 0; k < S; ++k)
@@ -182,9 +204,9 @@ struct Linearization {
       }
     for (int j = 0; j < S; ++j) {
       n[j] = n0;
-      if (M.k != 0)
+      if (at[j].k != 0)
         for (int k = 0; k < S; ++k)
-          if (M.table->a[j][k] != 0) add_scaled(n[j], M.h * M.table->a[j][k] * M.k, p[k]);
+          if (M.table->a[j][k] != 0) add_scaled(n[j], M.h * M.table->a[j][k] * at[k].k, p[k]);
       if constexpr (immersed(law))
         for (int k = 0; k < S; ++k)
           if (M.table->a[j][k] != 0) add_scaled(n[j], M.h * M.table->a[j][k], fluid[k]);
@@ -204,6 +226,7 @@ struct Linearization {
   }
 
   void laws(const CellModel& M, const CellStage* st) {
+    const Sections at(M);
     for (int j = 0; j < S; ++j) {
       const M3 R = load_matrix(st[j].R);
       // (5)
@@ -214,8 +237,8 @@ struct Linearization {
           right_jacobian_derivative(Omega, load(st[j].w), rotation_coefficients(dot(Omega, Omega)));
       if constexpr (law == CellLaw::kTendons) {
         const TendonSection& tendons = M.tendons[j];
-        add_curvature(rows, M, j, softened(M.C_bt, load_matrix(tendons.moment_u), 1), D);
-        add_block(rows, 3 * S + 3 * j, 1.0, softened(M.C_bt, load_matrix(tendons.moment_v), 0));
+        add_curvature(rows, M, j, softened(at[j].C_bt, load_matrix(tendons.moment_u), 1), D);
+        add_block(rows, 3 * S + 3 * j, 1.0, softened(at[j].C_bt, load_matrix(tendons.moment_v), 0));
       } else {
         add_block(rows, 3 * j, 1.0, J_r[j]);
         for (int k = 0; k < S; ++k)
@@ -225,22 +248,23 @@ struct Linearization {
       for (int k = 0; k < S; ++k)
         if (M.table->a[j][k] != 0) add_scaled(moved, M.h * M.table->a[j][k], m_s[k]);
       add_cross(moved, load(st[j].m), phi[j]);
-      add_product(rows, -1.0, compliance_of_axes(R, M.C_bt), moved);
+      add_product(rows, -1.0, compliance_of_axes(R, at[j].C_bt), moved);
       put_rows(rows, 3 * j, st[j].residual_u);
       // (6)
       if constexpr (lifts_stretch(law)) {
         set_zero(rows);
         if constexpr (law == CellLaw::kTendons) {
           const TendonSection& tendons = M.tendons[j];
-          add_curvature(rows, M, j, softened(M.C_se, transpose(load_matrix(tendons.moment_v)), 0),
-                        D);
-          add_block(rows, 3 * S + 3 * j, 1.0, softened(M.C_se, load_matrix(tendons.force_v), 1));
+          add_curvature(rows, M, j,
+                        softened(at[j].C_se, transpose(load_matrix(tendons.moment_v)), 0), D);
+          add_block(rows, 3 * S + 3 * j, 1.0,
+                    softened(at[j].C_se, load_matrix(tendons.force_v), 1));
         } else {
           add_block(rows, 3 * S + 3 * j, 1.0, identity());
         }
         moved = n[j];
         add_cross(moved, load(st[j].n), phi[j]);
-        add_product(rows, -1.0, compliance_of_axes(R, M.C_se), moved);
+        add_product(rows, -1.0, compliance_of_axes(R, at[j].C_se), moved);
         put_rows(rows, 3 * S + 3 * j, st[j].residual_v);
       }
     }
@@ -257,6 +281,7 @@ struct Linearization {
 
   void end(const CellModel& M, const CellStage* st, const NodeState& end_node, double* Y,
            double* dU) {
+    const Sections at(M);
     for (int i = 0; i < kLifted; ++i)
       for (int c = 0; c < NC; ++c)
         dU[i * NC + c] = -law_rows[i][kLifted + c];
@@ -269,7 +294,7 @@ struct Linearization {
       const double hb = M.h * M.table->b[j];
       add_block(phi0, 3 * j, hb, turn_end);
       add_scaled(p0, hb, tau[j]);
-      if (M.k != 0) add_scaled(n0, hb * M.k, p[j]);
+      if (at[j].k != 0) add_scaled(n0, hb * at[j].k, p[j]);
       if constexpr (immersed(law)) add_scaled(n0, hb, fluid[j]);
       add_scaled(m0, hb, m_s[j]);
     }

@@ -28,7 +28,8 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   assert(options.degree >= kLeastDegree && options.degree <= kMaxDegree);
   extensible_ = options.extension || options.shear;
   choose_space(plane, X_WBase.R);
-  place_sites(arc_grid(options.elements, options.stations));
+  place_sites(arc_grid(options.elements, options.stations, options.along.get()));
+  if (options_.along) list_sections();
   if (options.drag) fluid_ = Immersion(points_.size());
   const auto n = static_cast<Eigen::Index>(points_.size());
   const Eigen::Index strains = options.damping ? n * (extensible_ ? 2 : 1) : 0;
@@ -63,6 +64,9 @@ void CollocationRod::place_sites(const std::vector<double>& grid) {
   const std::vector<std::size_t> load_nodes = nodes_at(grid, options_.stations);
   std::vector<std::size_t> ends{0, grid.size() - 1};
   ends.insert(ends.end(), load_nodes.begin(), load_nodes.end());
+  if (options_.along)
+    for (std::size_t node : nodes_at(grid, options_.along->breaks()))
+      ends.push_back(node);
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (std::size_t node : load_nodes)
@@ -166,22 +170,47 @@ NodeState CollocationRod::tip_state() const {
   return state;
 }
 
-Vec3 CollocationRod::compliance_bt() const {
-  Vec3 K = section_.K_bt;
-  if (options_.damping) K += rates_.c_v * section_.B_bt;
+Vec3 CollocationRod::compliance_bt(const SectionProperties& section) const {
+  Vec3 K = section.K_bt;
+  if (options_.damping) K += rates_.c_v * section.B_bt;
   return K.cwiseInverse();
 }
 
 // Rigid modes are zeros: shear and extension each only if the scene lists them.
-Vec3 CollocationRod::compliance_se() const {
+Vec3 CollocationRod::compliance_se(const SectionProperties& section) const {
   Vec3 C = Vec3::Zero();
-  const Vec3 B = options_.damping ? section_.B_se : Vec3(Vec3::Zero());
+  const Vec3 B = options_.damping ? section.B_se : Vec3(Vec3::Zero());
   if (options_.shear)
-    C.head<2>() = (section_.K_se.head<2>() + rates_.c_v * B.head<2>()).cwiseInverse();
-  if (options_.extension) C.z() = 1 / (section_.K_se.z() + rates_.c_v * B.z());
+    C.head<2>() = (section.K_se.head<2>() + rates_.c_v * B.head<2>()).cwiseInverse();
+  if (options_.extension) C.z() = 1 / (section.K_se.z() + rates_.c_v * B.z());
   C.z() += forcing_.axial_softness * forcing_.length * forcing_.length /
            section_.K_bt.head<2>().maxCoeff();
   return C;
+}
+
+void CollocationRod::set_coefficients(const SectionProperties& section, PointModel& model) const {
+  model.C_bt = compliance_bt(section);
+  model.C_se = compliance_se(section);
+  model.k = section.rhoA * rates_.c_v * rates_.c_w + forcing_.relaxation;
+  model.rotary = options_.rotary_inertia && rates_.dynamic();
+  Eigen::Map<Vec3>(model.rhoJ) = section.rhoJ;
+  model.c_v = rates_.c_v;
+  model.c_w = rates_.c_w;
+  model.body_rates = rates_.body_rates;
+}
+
+void CollocationRod::list_sections() {
+  for (const Piece& piece : pieces_) {
+    const auto first = static_cast<std::size_t>(piece.first_point);
+    const std::size_t last = first + static_cast<std::size_t>(piece.points) - 1;
+    const double middle = 0.5 * (sites_[first].s + sites_[last].s);
+    for (std::size_t j = first; j <= last; ++j) {
+      // a piece ends where sections are not smooth: only its ends need to know their side
+      const double inside = j == first || j == last ? middle : sites_[j].s;
+      sections_.push_back(options_.along->at(sites_[j].s, inside));
+    }
+  }
+  models_.resize(sections_.size());
 }
 
 void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing) {
@@ -189,15 +218,10 @@ void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing)
   forcing_ = forcing;
   if (tendons_) tendons_->set(forcing.tendons);
   assert(forcing_.loads.size() == station_of_.size());
-  model_.C_bt = compliance_bt();
-  model_.C_se = compliance_se();
-  model_.k = section_.rhoA * rates.c_v * rates.c_w + forcing_.relaxation;
-  model_.rotary = options_.rotary_inertia && rates.dynamic();
-  Eigen::Map<Vec3>(model_.rhoJ) = section_.rhoJ;
-  model_.c_v = rates.c_v;
-  model_.c_w = rates.c_w;
-  model_.body_rates = rates.body_rates;
-  fluid_.prepare(section_.fluid, rates, forcing_, track_);
+  set_coefficients(section_, model_);
+  for (std::size_t j = 0; j < models_.size(); ++j)
+    set_coefficients(sections_[j], models_[j]);
+  fluid_.prepare(section_, sections_, rates, forcing_, track_);
   choose_units();
   update_point_inputs();
 }
@@ -221,29 +245,34 @@ void CollocationRod::choose_units() {
   for (int i = 0; i < 3; ++i)
     if (model_.C_se[i] > 0) K_se[i] = 1 / model_.C_se[i];
   growth_ = cprsim::growth_exponent(section_, model_.C_bt.cwiseInverse(), K_se, L, k, N);
+  for (std::size_t j = 0; j < models_.size(); ++j)
+    growth_ =
+        std::max(growth_, cprsim::growth_exponent(sections_[j], models_[j].C_bt.cwiseInverse(),
+                                                  K_se, L, models_[j].k, N));
   const double layer = L / std::max(1.0, growth_);
   unit_ = {layer, EI / (layer * layer), EI / layer};
 }
 
 // m = K (u - u_rest) + B u_t with u_t = c_v u + x_h: u = C (K u_rest - B x_h) + C m; likewise v.
 void CollocationRod::update_point_inputs() {
-  const Vec3 K_rest = section_.K_bt.cwiseProduct(section_.u_rest), z = Vec3::UnitZ();
+  const Vec3 z = Vec3::UnitZ();
   const auto n = static_cast<Eigen::Index>(points_.size());
   for (std::size_t j = 0; j < points_.size(); ++j) {
     CollocationPoint& point = points_[j];
+    const SectionProperties& own = section(j);
+    const PointModel& at = model(j);
     const auto i = 3 * static_cast<Eigen::Index>(j), strain = strain_track() + i;
-    point.b = -section_.weighing_mass() * forcing_.gravity;
-    point.u0 = model_.C_bt.cwiseProduct(K_rest);
+    point.b = -own.weighing_mass() * forcing_.gravity;
+    point.u0 = at.C_bt.cwiseProduct(own.K_bt.cwiseProduct(own.u_rest));
     point.v0 = z;
     if (forcing_.relaxation > 0) point.b -= forcing_.relaxation * marked_[j];
     if (!rates_.dynamic()) continue;
-    point.b += section_.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
+    point.b += own.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
     if (options_.damping) {
-      point.u0 -=
-          model_.C_bt.cwiseProduct(section_.B_bt.cwiseProduct(track_.x_h.segment<3>(strain)));
+      point.u0 -= at.C_bt.cwiseProduct(own.B_bt.cwiseProduct(track_.x_h.segment<3>(strain)));
       if (extensible_)
-        point.v0 -= model_.C_se.cwiseProduct(
-            section_.B_se.cwiseProduct(rates_.c_v * z + track_.x_h.segment<3>(strain + 3 * n)));
+        point.v0 -= at.C_se.cwiseProduct(
+            own.B_se.cwiseProduct(rates_.c_v * z + track_.x_h.segment<3>(strain + 3 * n)));
     }
     if (!model_.rotary) continue;
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(point.spin.R_start) =
@@ -310,7 +339,7 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
       points_[j].y = value(sites_[j]);
       points_[j].y_s = derivative(sites_[j]);
-      residual_.push_back(evaluate_point(model_, points_[j], fluid_at(j), tendons_at(j)));
+      residual_.push_back(evaluate_point(model(j), points_[j], fluid_at(j), tendons_at(j)));
       add(VecX(rows_ * point_scale(j).cwiseProduct(residual_.back())));
     }
   }

@@ -36,6 +36,7 @@
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/tendon_border.h"
+#include "engine/section/along.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -46,8 +47,9 @@ struct CollocationOptions {
   int degree = kDefaultDegree, elements = 4;  ///< elements: at least; all point loads are at knots
   bool extension = false, shear = false;      ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  std::vector<double> stations;  ///< s of point loads
-  std::vector<Tendon> tendons;   ///< whose breaks are stations, too
+  std::vector<double> stations;                ///< s of point loads
+  std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
+  std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
 class CollocationRod final : public RodModel, private TensionedRod {
@@ -153,8 +155,24 @@ class CollocationRod final : public RodModel, private TensionedRod {
   Vec6 load_at(std::size_t station, const Mat3& R) const;
   Mat6 load_by_turn(std::size_t station, const Mat3& R) const;
   void set_shape(const Pose& X_WBase, const std::function<Vec3(double)>& turn);
-  Vec3 compliance_bt() const;
-  Vec3 compliance_se() const;
+  void set_turned(const Pose& X_WBase, const std::function<Vec4(double)>& turned);
+  Vec3 compliance_bt(const SectionProperties& section) const;
+  Vec3 compliance_se(const SectionProperties& section) const;
+  void set_coefficients(const SectionProperties& section, PointModel& model) const;
+  void list_sections();
+
+  const SectionProperties& section(std::size_t point) const {
+    return sections_.empty() ? section_ : sections_[point];
+  }
+
+  Vec3 rest_curvature(double s) const {
+    return options_.along ? options_.along->rest_curvature(s) : section_.u_rest;
+  }
+
+  const PointModel& model(std::size_t point) const {
+    return models_.empty() ? model_ : models_[point];
+  }
+
   void update_point_inputs();
   void choose_units();
   Vec13 join_rows(std::size_t piece) const;
@@ -190,7 +208,8 @@ class CollocationRod final : public RodModel, private TensionedRod {
   MatX rows_;             ///< width × 13: of the 13 rows of a point, those that are not met anyway
   MatX increments_;       ///< 13 × width: those of a control point's increments that are free
   int planar_axis_ = -1;  ///< of the section: along the plane's normal
-  SectionProperties section_;
+  SectionProperties section_;                ///< of the base, if they vary
+  std::vector<SectionProperties> sections_;  ///< of the points; empty: the same everywhere
   CollocationOptions options_;
   bool extensible_ = false;
   int elements_ = 0;
@@ -204,6 +223,7 @@ class CollocationRod final : public RodModel, private TensionedRod {
 
   // coefficients of the current solve
   PointModel model_;
+  std::vector<PointModel> models_;  ///< of the points, where sections vary
   StageRates rates_;
   RodForcing forcing_;
   Immersion fluid_{0};

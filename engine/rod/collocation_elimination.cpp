@@ -79,7 +79,7 @@ void CollocationRod::assemble_points(std::size_t piece, int row) {
   Mat13 by_y, by_y_s;
   for (int i = 0; i < pieces_[piece].points; ++i, row += width()) {
     const auto j = static_cast<std::size_t>(pieces_[piece].first_point + i);
-    linearize_point(model_, points_[j], by_y, by_y_s, fluid_at(j), tendons_at(j));
+    linearize_point(model(j), points_[j], by_y, by_y_s, fluid_at(j), tendons_at(j));
     const BasisValues& b = sites_[j].basis;
     for (int k = 0; k <= options_.degree; ++k)
       if (b.value[k] != 0 || b.slope[k] != 0)

@@ -13,8 +13,12 @@ namespace cprsim {
 /// R(s) = R_base exp(turn(s)^), unsheared and without force: interpolated at the Greville abscissae
 /// of the fields' space, between which p is integrated.
 void CollocationRod::set_shape(const Pose& X_WBase, const std::function<Vec3(double)>& turn) {
+  set_turned(X_WBase, [&](double s) { return quaternion_of(turn(s)); });
+}
+
+void CollocationRod::set_turned(const Pose& X_WBase, const std::function<Vec4(double)>& turned) {
   const Vec4 q_base = quaternion_of(X_WBase.R);
-  const auto q = [&](double s) { return quaternion_product(q_base, quaternion_of(turn(s))); };
+  const auto q = [&](double s) { return quaternion_product(q_base, turned(s)); };
   const ArcTableau& gauss = arc_tableau(ArcIntegrator::kGauss6);
   Vec3 p = X_WBase.p;
   double s = 0;
@@ -37,6 +41,16 @@ void CollocationRod::set_shape(const Pose& X_WBase, const std::function<Vec3(dou
 }
 
 void CollocationRod::set_unloaded(const Pose& X_WBase) {
+  if (options_.along) {
+    // of the two quaternions of a rotation the one next to the last
+    Vec4 last = Vec4::UnitX();
+    set_turned(X_WBase, [&](double s) {
+      const Vec4 q = quaternion_of(options_.along->unloaded(s, forcing_.length).R);
+      last = q.dot(last) < 0 ? Vec4(-q) : q;
+      return last;
+    });
+    return;
+  }
   set_shape(X_WBase, [&](double s) { return Vec3(s * forcing_.length * section_.u_rest); });
 }
 
@@ -57,9 +71,12 @@ void CollocationRod::bow(const Port& base, const Port& tip) {
   const double ratio = chord.norm() / forcing_.length;
   if (ratio > 0.999) return;
   Mat3 R = base.R;
-  const Vec3 unloaded = R * right_jacobian(-forcing_.length * section_.u_rest).col(2);
+  const Vec3 unloaded = options_.along
+                            ? Vec3(R * options_.along->unloaded(1, forcing_.length).p)
+                            : Vec3(R * right_jacobian(-forcing_.length * section_.u_rest).col(2));
   if (!base_.fixed() && ratio > 1e-6) R = rotation_between(unloaded, chord) * R;
-  if (!section_.u_rest.isZero()) {  // a bent rod knows where to go
+  if (options_.along ? options_.along->bent_at_rest()
+                     : !section_.u_rest.isZero()) {  // a bent rod knows where to go
     set_unloaded({R, base.p});
     return;
   }
@@ -148,8 +165,8 @@ void CollocationRod::start_tracks_moving() {
       track_.v.segment<3>(strain + 3 * n) =
           point.R.transpose() * (y_s.segment<3>(kP) + point.y_s.segment<3>(kP).cross(phi));
     else if (extensible_)
-      track_.v.segment<3>(strain + 3 * n) =
-          model_.C_se.cwiseProduct(point.R.transpose() * (y.segment<3>(kN) + point.n().cross(phi)));
+      track_.v.segment<3>(strain + 3 * n) = model(j).C_se.cwiseProduct(
+          point.R.transpose() * (y.segment<3>(kN) + point.n().cross(phi)));
   }
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     track_.v.segment<3>(3 * (n + static_cast<Eigen::Index>(k))) = value(nodes_[k]).segment<3>(kP);

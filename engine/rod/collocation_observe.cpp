@@ -89,7 +89,7 @@ RodSample CollocationRod::observe() const {
     point.velocity = track_.v.segment<3>(3 * static_cast<Eigen::Index>(points_.size() + k));
     point.curvature = at.u;
     point.shear_stretch = at.R.transpose() * at.y_s.segment<3>(kP);
-    point.rest_curvature = section_.u_rest;
+    point.rest_curvature = rest_curvature(nodes_[k].s);
     sample.points.push_back(point);
   }
   return sample;
@@ -106,6 +106,7 @@ RodField CollocationRod::field() const {
       ++piece;
     for (int i = 0; i < f.table->stages; ++i) {
       const Site at = site(piece, s + f.table->c[i] * h);
+      if (options_.along) f.sections.push_back(options_.along->at(at.s, at.s));
       const Vec13 y = value(at);
       f.points.push_back({rotation_of(Vec4(y.head<4>())), derivative(at).segment<3>(kP),
                           y.segment<3>(kN), y.segment<3>(kM)});
@@ -121,37 +122,37 @@ RodField CollocationRod::field() const {
 RodEnergy CollocationRod::energy() const {
   RodEnergy e;
   const auto n = static_cast<Eigen::Index>(points_.size());
-  Vec3 K_se = Vec3::Zero();
-  if (options_.shear) K_se.head<2>() = section_.K_se.head<2>();
-  if (options_.extension) K_se.z() = section_.K_se.z();
-  const auto elastic = [&](const Vec3& u, const Vec3& v) {
-    const Vec3 bent = u - section_.u_rest, stretch = v - Vec3::UnitZ();
-    return 0.5 *
-           (bent.dot(section_.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
+  const auto elastic = [&](const SectionProperties& own, const Vec3& u, const Vec3& v) {
+    Vec3 K_se = Vec3::Zero();
+    if (options_.shear) K_se.head<2>() = own.K_se.head<2>();
+    if (options_.extension) K_se.z() = own.K_se.z();
+    const Vec3 bent = u - own.u_rest, stretch = v - Vec3::UnitZ();
+    return 0.5 * (bent.dot(own.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
   };
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const double weight = weights_[j] * forcing_.length;
     const CollocationPoint& point = points_[j];
+    const SectionProperties& own = section(j);
     const auto i = 3 * static_cast<Eigen::Index>(j), strain = strain_track() + i;
-    e.kinetic += weight * 0.5 * section_.rhoA * track_.v.segment<3>(i).squaredNorm();
+    e.kinetic += weight * 0.5 * own.rhoA * track_.v.segment<3>(i).squaredNorm();
     if (options_.rotary_inertia) {
       const Vec3 omega = Eigen::Map<const Vec3>(point.spin.omega);
-      e.kinetic += weight * 0.5 * omega.dot(section_.rhoJ.cwiseProduct(omega));
+      e.kinetic += weight * 0.5 * omega.dot(own.rhoJ.cwiseProduct(omega));
     }
-    e.elastic += weight * elastic(point.u, point.v);
-    e.gravity -= weight * section_.weighing_mass() * forcing_.gravity.dot(point.p());
+    e.elastic += weight * elastic(own, point.u, point.v);
+    e.gravity -= weight * own.weighing_mass() * forcing_.gravity.dot(point.p());
     if (options_.drag) fluid_.add_power(j, point.R.col(2), weight, track_, e);
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strain);
-    e.damping_power += weight * u_t.dot(section_.B_bt.cwiseProduct(u_t));
+    e.damping_power += weight * u_t.dot(own.B_bt.cwiseProduct(u_t));
     if (!extensible_) continue;
     const Vec3 v_t = track_.v.segment<3>(strain + 3 * n);
-    e.damping_power += weight * v_t.dot(section_.B_se.cwiseProduct(v_t));
+    e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
   // per unit feed: the base section's traction works on the inflow, which brings strain energy and
   // weight along; the first point is the base
   const CollocationPoint& base = points_.front();
-  e.feed_power = elastic(base.u, base.v) - (base.R.transpose() * base.n()).dot(base.v) -
+  e.feed_power = elastic(section_, base.u, base.v) - (base.R.transpose() * base.n()).dot(base.v) -
                  (base.R.transpose() * base.m()).dot(base.u) -
                  section_.weighing_mass() * forcing_.gravity.dot(base.p());
   return e;

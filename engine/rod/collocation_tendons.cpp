@@ -13,10 +13,10 @@ void CollocationRod::place_tendons() {
     // its first and last point stand where the next piece begins
     const double inside = 0.5 * (sites_[first].s + sites_[last].s);
     for (std::size_t j = first; j <= last; ++j)
-      sections.push_back({sites_[j].s, inside, weights_[j]});
+      sections.push_back({sites_[j].s, inside, weights_[j], rest_curvature(sites_[j].s)});
   }
   tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.u_rest, section_.K_bt.head<2>().maxCoeff());
+                                          section_.K_bt.head<2>().maxCoeff());
 }
 
 void CollocationRod::describe_tendons(const Site& at, RodField& field) const {
@@ -51,8 +51,8 @@ void CollocationRod::add_tension(Eigen::Index unknown, bool add) {
     for (int i = 0; i < pieces_[g].points; ++i, ++row) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
       const Vec6 Lambda = tendons_->per_tension(unknown, j);
-      residual_[row].segment<3>(kQ + 1) += model_.C_bt.cwiseProduct(Lambda.head<3>());
-      residual_[row].segment<3>(kP) += points_[j].R * model_.C_se.cwiseProduct(Lambda.tail<3>());
+      residual_[row].segment<3>(kQ + 1) += model(j).C_bt.cwiseProduct(Lambda.head<3>());
+      residual_[row].segment<3>(kP) += points_[j].R * model(j).C_se.cwiseProduct(Lambda.tail<3>());
     }
   }
 }

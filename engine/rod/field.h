@@ -32,6 +32,8 @@ struct RodField {
   double added_mass = 0;     ///< of a fluid, across the tangent, kg/m
   Vec3 rhoJ = Vec3::Zero();  ///< whether or not the scene lists rotary inertia
 
+  std::vector<SectionProperties> sections;  ///< of the points, where they vary
+
   /// At the next point.
   void add_tendons(const Mat6& stiffness, const MatX& held) {
     tendons.push_back(stiffness);

@@ -15,6 +15,7 @@ namespace {
 
 /// Radians that the unloaded rod is wound up by.
 double turn_of(const RodPlan& plan) {
+  if (plan.along) return plan.along->turn(plan.spec->length);
   return plan.spec->length * plan.section.u_rest.norm();
 }
 

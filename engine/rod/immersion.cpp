@@ -6,14 +6,16 @@
 
 namespace cprsim {
 
-void Immersion::prepare(const FluidProperties& fluid, const StageRates& rates,
-                        const RodForcing& forcing, const Track& positions) {
+void Immersion::prepare(const SectionProperties& section, const std::vector<SectionProperties>& own,
+                        const StageRates& rates, const RodForcing& forcing,
+                        const Track& positions) {
   if (places_.empty()) return;
   rates_ = rates;
   wind_ = forcing.wind;
   acts_ = rates.dynamic() || !wind_.isZero(0);
   for (std::size_t j = 0; j < places_.size(); ++j) {
     FluidSection& place = places_[j];
+    const FluidProperties& fluid = own.empty() ? section.fluid : own[j].fluid;
     place.normal = fluid.normal;
     place.tangential = fluid.tangential;
     place.added_mass = fluid.added_mass;

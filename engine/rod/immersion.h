@@ -17,8 +17,9 @@ class Immersion {
   explicit Immersion(std::size_t count) : places_(count) {}
 
   /// Inputs of a solve.
-  void prepare(const FluidProperties& fluid, const StageRates& rates, const RodForcing& forcing,
-               const Track& positions);
+  /// @param own of each place, or empty: all are like `section`.
+  void prepare(const SectionProperties& section, const std::vector<SectionProperties>& own,
+               const StageRates& rates, const RodForcing& forcing, const Track& positions);
 
   /// Whether a force acts in the present solve: something moves, the rod or the fluid.
   bool acts() const { return acts_; }

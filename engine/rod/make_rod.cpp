@@ -24,6 +24,7 @@ ShootingOptions shooting_options(const RodPlan& plan) {
   o.drag = plan.drag;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
+  o.along = plan.along;
   return o;
 }
 
@@ -73,6 +74,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.drag = plan.drag;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
+  o.along = plan.along;
   if (!plan.plane)
     return std::make_unique<StrainRod>(spec.name, EndCondition(spec.base), EndCondition(spec.tip),
                                        plan.plane, plan.X_WBase, plan.section, plan.length, o);
@@ -94,6 +96,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.drag = plan.drag;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
+  o.along = plan.along;
   if (!plan.plane)
     return std::make_unique<CollocationRod>(spec.name, EndCondition(spec.base),
                                             EndCondition(spec.tip), plan.plane, plan.X_WBase,

@@ -11,6 +11,7 @@
 #include "engine/model/rod_spec.h"
 #include "engine/model/solver_spec.h"
 #include "engine/rod/rod_model.h"
+#include "engine/section/along.h"
 #include "engine/section/section.h"
 #include "engine/section/tendon.h"
 
@@ -21,7 +22,8 @@ struct RodPlan {
   const RodSpec* spec = nullptr;
   Pose X_WBase, X_WTip;       ///< joint frames; of the tip only if it is held
   std::optional<Mat3> plane;  ///< of a planar scene: e1, e2 and the normal as columns, world
-  SectionProperties section;
+  SectionProperties section;  ///< of the base, if they vary
+  std::shared_ptr<const SectionsAlong> along;  ///< null: the same all along
   double length = 0;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;

@@ -18,7 +18,7 @@ V3 plain(const Vec3& x) {
 }  // namespace
 
 RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
-                       const std::vector<AskedSection>& sections, const Vec3& rest, double EI)
+                       const std::vector<AskedSection>& sections, double EI)
     : tendons_(std::move(tendons)), length_(length), tensions_(tendons_.size(), 0.0) {
   const std::size_t n = tendons_.size();
   stretch_.assign(n * sections.size(), 0);
@@ -38,7 +38,7 @@ RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
     sections_.push_back(section);
   }
   for (std::size_t i = 0; i < sections.size(); ++i)
-    evaluate(i, rest, Vec3::UnitZ());
+    evaluate(i, sections[i].rest, Vec3::UnitZ());
   unloaded_ = lengths();
   // of the size of what a newton displaces
   for (std::size_t k = 0; k < n; ++k) {

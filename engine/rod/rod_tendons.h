@@ -15,6 +15,7 @@ namespace cprsim {
 struct AskedSection {
   double s = 0, inside = 0;  ///< as Tendon::at
   double weight = 0;
+  Vec3 rest = Vec3::Zero();  ///< curvature of the unloaded rod, section axes
 };
 
 /// Tensions are given, or unknown where the displacement is: then x is the tension as long as the
@@ -22,9 +23,9 @@ struct AskedSection {
 ///   gap = (length - prescribed length - c min(x, 0)) / L = 0,   tension = max(x, 0)            (1)
 class RodTendons {
  public:
-  /// @param rest curvature of the unloaded rod, section axes. @param EI that makes c a compliance
+  /// @param EI that makes c a compliance
   RodTendons(std::vector<Tendon> tendons, double length, const std::vector<AskedSection>& sections,
-             const Vec3& rest, double EI);
+             double EI);
 
   RodTendons(const RodTendons&) = delete;
   RodTendons& operator=(const RodTendons&) = delete;

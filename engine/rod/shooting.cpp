@@ -33,7 +33,7 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
       section_(section),
       options_(options),
       table_(&arc_tableau(options.integrator)),
-      grid_(arc_grid(options.cells, options.stations)),
+      grid_(arc_grid(options.cells, options.stations, options.along.get())),
       fluid_(options.drag ? (grid_.size() - 1) * static_cast<std::size_t>(table_->stages) : 0) {
   cells_ = static_cast<int>(grid_.size()) - 1;
   extensible_ = options.extension || options.shear;
@@ -49,14 +49,19 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
   if (options_.rotary_inertia) rotation_track_.resize(3 * static_cast<Eigen::Index>(n));
   reference_rotations_.assign(9 * n, 0);
   forcing_.length = length;
+  if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
   set_unloaded(Pose{});
 }
 
-void ShootingRod::enter_cell(std::size_t cell) {
-  model_.h = cell_length(cell);
-  if (fluid_.acts()) model_.fluid = fluid_.at(cell * static_cast<std::size_t>(table_->stages));
-  if (tendons_) model_.tendons = &tendons_->at(cell * static_cast<std::size_t>(table_->stages));
+void ShootingRod::list_sections() {
+  const auto S = static_cast<std::size_t>(table_->stages);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const double from = grid_[j / S], to = grid_[j / S + 1];
+    sections_.push_back(
+        options_.along->at(from + (to - from) * table_->c[j % S], 0.5 * (from + to)));
+  }
+  varying_.resize(stages_.size());
 }
 
 // With constant u: R = R_0 exp(s u^), p = p_0 + R_0 (integral of exp) z, the integral being
@@ -67,14 +72,21 @@ void ShootingRod::set_unloaded(const Pose& X_WBase) {
   Eigen::Map<Vec3>(state.p) = X_WBase.p;
   starts_.assign(1, state);
   segment_first_ = {0, static_cast<std::size_t>(cells_)};
-  for (CellStage& stage : stages_) {
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    CellStage& stage = stages_[j];
     // Omega = s u stays parallel to u, so that its rate w is u itself
-    Eigen::Map<Vec3>(stage.w) = section_.u_rest;
+    Eigen::Map<Vec3>(stage.w) = section(j).u_rest;
     std::fill_n(stage.v, 2, 0.0);
     stage.v[2] = 1;
   }
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     nodes_[k] = state;
+    if (options_.along) {
+      const Pose X = X_WBase * options_.along->unloaded(grid_[k], forcing_.length);
+      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nodes_[k].R) = X.R;
+      Eigen::Map<Vec3>(nodes_[k].p) = X.p;
+      continue;
+    }
     const double s = grid_[k] * forcing_.length;
     const Vec3 turn = s * section_.u_rest;
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(nodes_[k].R) =
@@ -84,24 +96,33 @@ void ShootingRod::set_unloaded(const Pose& X_WBase) {
   evaluated_ = false;
 }
 
-Vec3 ShootingRod::compliance_bt() const {
-  Vec3 K = section_.K_bt;
-  if (options_.damping) K += rates_.c_v * section_.B_bt;
+Vec3 ShootingRod::compliance_bt(const SectionProperties& section) const {
+  Vec3 K = section.K_bt;
+  if (options_.damping) K += rates_.c_v * section.B_bt;
   return K.cwiseInverse();
 }
 
 // Rigid modes are zeros: shear and extension each only if the scene lists them.
-Vec3 ShootingRod::compliance_se() const {
+Vec3 ShootingRod::compliance_se(const SectionProperties& section) const {
   Vec3 C = Vec3::Zero();
-  const Vec3 B = options_.damping ? section_.B_se : Vec3(Vec3::Zero());
+  const Vec3 B = options_.damping ? section.B_se : Vec3(Vec3::Zero());
   if (options_.shear) {
-    C.x() = 1 / (section_.K_se.x() + rates_.c_v * B.x());
-    C.y() = 1 / (section_.K_se.y() + rates_.c_v * B.y());
+    C.x() = 1 / (section.K_se.x() + rates_.c_v * B.x());
+    C.y() = 1 / (section.K_se.y() + rates_.c_v * B.y());
   }
-  if (options_.extension) C.z() = 1 / (section_.K_se.z() + rates_.c_v * B.z());
+  if (options_.extension) C.z() = 1 / (section.K_se.z() + rates_.c_v * B.z());
   C.z() += forcing_.axial_softness * forcing_.length * forcing_.length /
            section_.K_bt.head<2>().maxCoeff();
   return C;
+}
+
+CellSection ShootingRod::coefficients(const SectionProperties& section) const {
+  CellSection c;
+  Eigen::Map<Vec3>(c.C_bt) = compliance_bt(section);
+  Eigen::Map<Vec3>(c.C_se) = compliance_se(section);
+  c.k = section.rhoA * rates_.c_v * rates_.c_w + forcing_.relaxation;
+  Eigen::Map<Vec3>(c.rhoJ) = section.rhoJ;
+  return c;
 }
 
 void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
@@ -110,15 +131,14 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   assert(forcing_.loads.size() == load_at_.size());
   const double L = forcing_.length;
   model_.table = table_;
-  Eigen::Map<Vec3>(model_.C_bt) = compliance_bt();
-  Eigen::Map<Vec3>(model_.C_se) = compliance_se();
-  model_.k = section_.rhoA * rates.c_v * rates.c_w + forcing_.relaxation;
+  static_cast<CellSection&>(model_) = coefficients(section_);
+  for (std::size_t j = 0; j < sections_.size(); ++j)
+    varying_[j] = coefficients(sections_[j]);
   model_.rotary = options_.rotary_inertia && rates.dynamic();
-  Eigen::Map<Vec3>(model_.rhoJ) = section_.rhoJ;
   model_.c_v = rates.c_v;
   model_.c_w = rates.c_w;
   model_.body_rates = rates.body_rates;
-  fluid_.prepare(section_.fluid, rates, forcing_, track_);
+  fluid_.prepare(section_, sections_, rates, forcing_, track_);
   const bool stretches = extensible_ || forcing.axial_softness > 0;
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
@@ -143,22 +163,24 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
 void ShootingRod::update_stage_inputs() {
   // m = K (u - u_rest) + B u_t with u_t = c_v u + x_h: u = C (K u_rest - B x_h) + C m. Damping
   // acts on the rate alone, and the rest curvature has none.
-  const Vec3 K_rest = section_.K_bt.cwiseProduct(section_.u_rest);
   const auto n = static_cast<Eigen::Index>(stage_count());
   const auto strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
-  const Vec3 C_bt = compliance_bt(), C_se = compliance_se();
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     CellStage& stage = stages_[j];
+    const SectionProperties& own = section(j);
+    const CellSection& at = coefficients_at(j);
+    const Vec3 C_bt = Eigen::Map<const Vec3>(at.C_bt), C_se = Eigen::Map<const Vec3>(at.C_se);
+    const Vec3 K_rest = own.K_bt.cwiseProduct(own.u_rest);
     const auto i = 3 * static_cast<Eigen::Index>(j);
-    Vec3 b = -section_.weighing_mass() * forcing_.gravity;
+    Vec3 b = -own.weighing_mass() * forcing_.gravity;
     Vec3 u0 = C_bt.cwiseProduct(K_rest), v0(0, 0, 1);
     if (rates_.dynamic()) {
-      b += section_.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
+      b += own.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));
       if (options_.damping) {
-        u0 -= C_bt.cwiseProduct(section_.B_bt.cwiseProduct(track_.x_h.segment<3>(strains + i)));
+        u0 -= C_bt.cwiseProduct(own.B_bt.cwiseProduct(track_.x_h.segment<3>(strains + i)));
         // v0 = C (K z - B v_h): with C = 1/(K + c_v B) this is z - C B (c_v z + v_h)
         if (extensible_)
-          v0 -= C_se.cwiseProduct(section_.B_se.cwiseProduct(
+          v0 -= C_se.cwiseProduct(own.B_se.cwiseProduct(
               rates_.c_v * Vec3(0, 0, 1) + track_.x_h.segment<3>(strains + 3 * n + i)));
       }
       if (model_.rotary) {
@@ -177,17 +199,21 @@ void ShootingRod::update_stage_inputs() {
 // Segments from the growth exponent; cells are shared out evenly. Starts move to the nodes last
 // reached.
 void ShootingRod::choose_segments() {
-  Vec3 K_bt =
-      model_.C_bt[0] > 0 ? Vec3(Eigen::Map<const Vec3>(model_.C_bt).cwiseInverse()) : section_.K_bt;
-  Vec3 K_se = Vec3::Zero();
-  for (int i = 0; i < 3; ++i)
-    if (model_.C_se[i] > 0) K_se[i] = 1 / model_.C_se[i];
   double N = force_of(starts_.front()).norm();
   if (evaluated_)
     for (const NodeState& node : nodes_)
       N = std::max(N, force_of(node).norm());
-  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length,
-                                    model_.k + fluid_.stiffness(), N);
+  const auto growth = [&](const SectionProperties& own, const CellSection& at) {
+    const Vec3 K_bt =
+        at.C_bt[0] > 0 ? Vec3(Eigen::Map<const Vec3>(at.C_bt).cwiseInverse()) : own.K_bt;
+    Vec3 K_se = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+      if (at.C_se[i] > 0) K_se[i] = 1 / at.C_se[i];
+    return cprsim::growth_exponent(own, K_bt, K_se, forcing_.length, at.k + fluid_.stiffness(), N);
+  };
+  growth_ = growth(section_, model_);
+  for (std::size_t j = 0; j < sections_.size(); ++j)
+    growth_ = std::max(growth_, growth(sections_[j], varying_[j]));
   const double layer = forcing_.length / std::max(1.0, growth_);
   const double EI = scale_.moment * scale_.length;
   port_scale_ = {layer, EI / (layer * layer), EI / layer};

@@ -28,6 +28,7 @@
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/tendon_border.h"
+#include "engine/section/along.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -37,8 +38,9 @@ struct ShootingOptions {
   int cells = 10;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  std::vector<double> stations;  ///< s of point loads: grid nodes are placed there
-  std::vector<Tendon> tendons;   ///< whose breaks are stations, too
+  std::vector<double> stations;                ///< s of point loads: grid nodes are placed there
+  std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
+  std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
 /// Largest growth of the arc-length problem over a rod of length L (design section 5): bending, and
@@ -146,8 +148,10 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   void close_tip(const Port& tip, const double* Y, CondensedRod& out) const;
   void close_base(const Port& base, CondensedRod& out) const;
   RodResidual& add_row(RodResidual& r, double value, int row) const;
-  Vec3 compliance_bt() const;
-  Vec3 compliance_se() const;
+  Vec3 compliance_bt(const SectionProperties& section) const;
+  Vec3 compliance_se(const SectionProperties& section) const;
+  CellSection coefficients(const SectionProperties& section) const;
+  void list_sections();
   void update_stage_inputs();
   void place_tendons();
   bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
@@ -156,7 +160,6 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   void take_direction(const VecX& direction);
   void add_tension(Eigen::Index unknown, bool add) override;
   std::vector<Vec6> strain_rates(const VecX& direction) const override;
-  void enter_cell(std::size_t cell);
 
   // contact
   const NodeState& cell_state(std::size_t cell) const;
@@ -164,6 +167,15 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   double cell_length(std::size_t cell) const {
     return (grid_[cell + 1] - grid_[cell]) * forcing_.length;
+  }
+
+  /// What of the model is the cell's.
+  void enter_cell(std::size_t cell) {
+    const std::size_t stage = cell * static_cast<std::size_t>(table_->stages);
+    model_.h = cell_length(cell);
+    if (fluid_.acts()) model_.fluid = fluid_.at(stage);
+    if (tendons_) model_.tendons = &tendons_->at(stage);
+    if (!varying_.empty()) model_.sections = &varying_[stage];
   }
 
   void add_contact_force(const RodContact& contact, int end, NodeState& state) const;
@@ -202,11 +214,28 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   std::size_t contact_count() const { return touch_ ? touch_->contacts.size() : 0; }
 
+  const SectionProperties& section(std::size_t stage) const {
+    return sections_.empty() ? section_ : sections_[stage];
+  }
+
+  const CellSection& coefficients_at(std::size_t stage) const {
+    return varying_.empty() ? model_ : varying_[stage];
+  }
+
+  Vec3 rest_curvature(double s) const {
+    return options_.along ? options_.along->rest_curvature(s) : section_.u_rest;
+  }
+
+  bool bent_at_rest() const {
+    return options_.along ? options_.along->bent_at_rest() : !section_.u_rest.isZero();
+  }
+
   std::size_t stage_count() const { return stages_.size(); }
 
   std::string name_;
   RodEnd base_, tip_;
-  SectionProperties section_;
+  SectionProperties section_;                ///< of the base, if they vary
+  std::vector<SectionProperties> sections_;  ///< of the stages; empty: the same everywhere
   ShootingOptions options_;
   const ArcTableau* table_;
   int cells_ = 0;
@@ -217,6 +246,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   // coefficients of the current solve
   CellModel model_;
+  std::vector<CellSection> varying_;  ///< of the stages, where sections vary
   StageRates rates_;
   RodForcing forcing_;
   Immersion fluid_;

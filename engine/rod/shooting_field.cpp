@@ -21,6 +21,7 @@ RodField ShootingRod::field() const {
     f.add_tendons(stiffness_of(tendons_->at(j)), tendons_->locked_at(j));
   f.base = starts_.front();
   f.tip = nodes_.back();
+  f.sections = sections_;
   describe_section(f, section_, options_.shear, options_.extension);
   return f;
 }

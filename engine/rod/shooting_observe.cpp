@@ -49,10 +49,12 @@ void ShootingRod::bow(const Port& base, const Port& tip) {
   const double ratio = chord.norm() / forcing_.length;
   if (ratio > 0.999) return;
   Mat3 R = base.R;
-  const Vec3 unloaded = R * right_jacobian(-forcing_.length * section_.u_rest).col(2);
+  const Vec3 unloaded = options_.along
+                            ? Vec3(R * options_.along->unloaded(1, forcing_.length).p)
+                            : Vec3(R * right_jacobian(-forcing_.length * section_.u_rest).col(2));
   if (!base_.fixed() && ratio > 1e-6) R = rotation_between(unloaded, chord) * R;
   set_unloaded({R, base.p});
-  if (!section_.u_rest.isZero()) return;  // a bent rod knows where to go
+  if (bent_at_rest()) return;  // a bent rod knows where to go
   const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
   const int axis = section_.K_bt.x() <= section_.K_bt.y() ? 0 : 1;
   const auto S = static_cast<std::size_t>(table_->stages);
@@ -158,7 +160,8 @@ void ShootingRod::start_tracks_moving() {
       const Vec3 phi_j = phi + R * (J_r * dOmega);
       if (lifts_stretch(law_)) dv[j] = vec(d + 3 * S + 3 * j);
       if (law_ == CellLaw::kExtensibleStatic)
-        dv[j] = vec(model_.C_se).cwiseProduct(R.transpose() * (dn + vec(stage[j].n).cross(phi_j)));
+        dv[j] = vec(coefficients_at(c * S + j).C_se)
+                    .cwiseProduct(R.transpose() * (dn + vec(stage[j].n).cross(phi_j)));
       dtau[j] = phi_j.cross(vec(stage[j].tau)) + R * dv[j];
       Eigen::Map<Vec3>(stage[j].omega) = R.transpose() * phi_j;
       dOmega_end += h * table_->b[j] * dw;
@@ -296,7 +299,7 @@ RodSample ShootingRod::observe() const {
       sides += 1;
     }
     point.curvature = u / sides;
-    point.rest_curvature = section_.u_rest;
+    point.rest_curvature = rest_curvature(grid_[k]);
     point.shear_stretch = v / sides;
   }
   return sample;
@@ -307,32 +310,35 @@ RodEnergy ShootingRod::energy() const {
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto n = static_cast<Eigen::Index>(stages_.size());
   const Eigen::Index strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
-  Vec3 K_se = Vec3::Zero();
-  if (options_.shear) K_se.head<2>() = section_.K_se.head<2>();
-  if (options_.extension) K_se.z() = section_.K_se.z();
+  const auto free_stiffness = [&](const SectionProperties& own) {
+    Vec3 K_se = Vec3::Zero();
+    if (options_.shear) K_se.head<2>() = own.K_se.head<2>();
+    if (options_.extension) K_se.z() = own.K_se.z();
+    return K_se;
+  };
   const Vec3 z(0, 0, 1);
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const std::size_t cell = j / S;
     const double weight = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
     const CellStage& stage = stages_[j];
+    const SectionProperties& own = section(j);
+    const Vec3 K_se = free_stiffness(own);
     const auto i = 3 * static_cast<Eigen::Index>(j);
-    const Vec3 bent = vec(stage.u) - section_.u_rest, stretch = vec(stage.v) - z;
-    e.kinetic += weight * 0.5 * section_.rhoA * track_.v.segment<3>(i).squaredNorm();
+    const Vec3 bent = vec(stage.u) - own.u_rest, stretch = vec(stage.v) - z;
+    e.kinetic += weight * 0.5 * own.rhoA * track_.v.segment<3>(i).squaredNorm();
     if (options_.rotary_inertia)
-      e.kinetic +=
-          weight * 0.5 * vec(stage.omega).dot(section_.rhoJ.cwiseProduct(vec(stage.omega)));
-    e.elastic +=
-        weight * 0.5 *
-        (bent.dot(section_.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
-    e.gravity -= weight * section_.weighing_mass() * forcing_.gravity.dot(vec(stage.p));
+      e.kinetic += weight * 0.5 * vec(stage.omega).dot(own.rhoJ.cwiseProduct(vec(stage.omega)));
+    e.elastic += weight * 0.5 *
+                 (bent.dot(own.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
+    e.gravity -= weight * own.weighing_mass() * forcing_.gravity.dot(vec(stage.p));
     if (options_.drag)
       fluid_.add_power(j, Eigen::Map<const RowMatrix>(stage.R).col(2), weight, track_, e);
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strains + i);
-    e.damping_power += weight * u_t.dot(section_.B_bt.cwiseProduct(u_t));
+    e.damping_power += weight * u_t.dot(own.B_bt.cwiseProduct(u_t));
     if (!extensible_) continue;
     const Vec3 v_t = track_.v.segment<3>(strains + 3 * n + i);
-    e.damping_power += weight * v_t.dot(section_.B_se.cwiseProduct(v_t));
+    e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
   if (touch_ && touch_->friction && rates_.dynamic())
     for (std::size_t i = 0; i < std::min(touch_->rows.size(), touch_->contacts.size()); ++i)
@@ -345,8 +351,8 @@ RodEnergy ShootingRod::energy() const {
   const Vec3 n_S = rotation_of(base).transpose() * force_of(base),
              m_S = rotation_of(base).transpose() * moment_of(base);
   const Vec3 bent = u - section_.u_rest;
-  const double density =
-      0.5 * (bent.dot(section_.K_bt.cwiseProduct(bent)) + (v - z).dot(K_se.cwiseProduct(v - z)));
+  const double density = 0.5 * (bent.dot(section_.K_bt.cwiseProduct(bent)) +
+                                (v - z).dot(free_stiffness(section_).cwiseProduct(v - z)));
   e.feed_power = density - n_S.dot(v) - m_S.dot(u) -
                  section_.weighing_mass() * forcing_.gravity.dot(position_of(base));
   return e;

@@ -19,10 +19,11 @@ void ShootingRod::place_tendons() {
   for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c)
     for (int j = 0; j < table_->stages; ++j) {
       const double from = grid_[c], h = grid_[c + 1] - from;
-      sections.push_back({from + h * table_->c[j], from + 0.5 * h, h * table_->b[j]});
+      const double s = from + h * table_->c[j];
+      sections.push_back({s, from + 0.5 * h, h * table_->b[j], rest_curvature(s)});
     }
   tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.u_rest, section_.K_bt.head<2>().maxCoeff());
+                                          section_.K_bt.head<2>().maxCoeff());
 }
 
 // Starts of segments, lifted unknowns, contact forces.
@@ -62,10 +63,11 @@ void ShootingRod::add_tension(Eigen::Index unknown, bool add) {
   }
   kept_stages_ = stages_;
   for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const CellSection& at = coefficients_at(j);
     const Vec6 Lambda = tendons_->per_tension(unknown, j);
     for (int i = 0; i < 3; ++i) {
-      stages_[j].residual_u[i] += model_.C_bt[i] * Lambda[i];
-      stages_[j].residual_v[i] += model_.C_se[i] * Lambda[3 + i];
+      stages_[j].residual_u[i] += at.C_bt[i] * Lambda[i];
+      stages_[j].residual_v[i] += at.C_se[i] * Lambda[3 + i];
     }
   }
 }

@@ -35,7 +35,7 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
       section_(section),
       options_(options),
       rule_(options.order, options.order + kExtraPoints),
-      grid_(arc_grid(options.elements, options.stations)),
+      grid_(arc_grid(options.elements, options.stations, options.along.get())),
       fluid_(options.drag ? (grid_.size() - 1) * static_cast<std::size_t>(rule_.points()) : 0) {
   list_modes(X_WBase.R);
   load_at_ = nodes_at(grid_, options_.stations);
@@ -56,6 +56,7 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   for (VecX* gap : {&tip_gap_, &base_gap_, &tip_gap_start_, &base_gap_start_})
     gap->setZero(space_.freedoms());
   forcing_.length = length;
+  if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
   set_unloaded(X_WBase);
 }
@@ -65,10 +66,25 @@ void StrainRod::place_tendons() {
   for (std::size_t e = 0; e < elements(); ++e)
     for (Eigen::Index i = 0; i < rule_.points(); ++i) {
       const double s = grid_[e] + (grid_[e + 1] - grid_[e]) * rule_.gauss.points[i];
-      sections.push_back({s, s, (grid_[e + 1] - grid_[e]) * rule_.gauss.weights[i]});
+      sections.push_back({s, s, (grid_[e + 1] - grid_[e]) * rule_.gauss.weights[i],
+                          rest_curvature(e, rule_.phi.col(i))});
     }
   tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.u_rest, section_.K_bt.head<2>().maxCoeff());
+                                          section_.K_bt.head<2>().maxCoeff());
+}
+
+void StrainRod::list_sections() {
+  const SectionsAlong& along = *options_.along;
+  for (std::size_t e = 0; e < elements(); ++e) {
+    const double from = grid_[e], h = grid_[e + 1] - from;
+    Rows3 rest = Rows3::Zero(3, rule_.functions());
+    for (Eigen::Index i = 0; i < rule_.points(); ++i) {
+      const double s = from + h * rule_.gauss.points[i];
+      sections_.push_back(along.at(s, from + 0.5 * h));
+      rest += rule_.gauss.weights[i] * along.rest_curvature(s) * rule_.phi.col(i).transpose();
+    }
+    rest_.push_back(rest);
+  }
 }
 
 // In a plane a section bends about its axis along the normal, which is a principal one or all are
@@ -103,6 +119,12 @@ void StrainRod::set_unloaded(const Pose& X_WBase) {
     q.setZero();
   const auto place = [&](double s, NodeState& node) {
     node = NodeState{};
+    if (options_.along) {
+      const Pose X = X_WBase * options_.along->unloaded(s, forcing_.length);
+      Eigen::Map<RowMatrix>(node.R) = X.R;
+      Eigen::Map<Vec3>(node.p) = X.p;
+      return;
+    }
     const Vec3 turned = s * forcing_.length * section_.u_rest;
     Eigen::Map<RowMatrix>(node.R) = X_WBase.R * exp_so3(turned);
     Eigen::Map<Vec3>(node.p) =
@@ -129,19 +151,43 @@ double StrainRod::compliance(const StrainMode& mode) const {
   return C;
 }
 
+double StrainRod::stiffness(const StrainMode& mode, std::size_t point) const {
+  const SectionProperties& own = section(point);
+  return mode.axis.dot((mode.turns ? own.K_bt : own.K_se).cwiseProduct(mode.axis));
+}
+
+double StrainRod::damping(const StrainMode& mode, std::size_t point) const {
+  const SectionProperties& own = section(point);
+  if (!options_.damping) return 0;
+  return mode.axis.dot((mode.turns ? own.B_bt : own.B_se).cwiseProduct(mode.axis));
+}
+
+double StrainRod::compliance(const StrainMode& mode, std::size_t point) const {
+  const double base = compliance(mode);
+  if (sections_.empty() || !mode.listed) return base;
+  return base + 1 / (stiffness(mode, point) + rates_.c_v * damping(mode, point)) -
+         1 / (mode.K + rates_.c_v * mode.damping);
+}
+
 void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   rates_ = rates;
   forcing_ = forcing;
   if (tendons_) tendons_->set(forcing.tendons);
   assert(forcing_.loads.size() == load_at_.size());
-  k_ = section_.rhoA * rates.c_v * rates.c_w + forcing.relaxation;
+  k_.assign(points_.size(), 0);
+  double k_most = 0;
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    k_[j] = section(j).rhoA * rates.c_v * rates.c_w + forcing.relaxation;
+    k_most = std::max(k_most, k_[j]);
+  }
+  inertia_ = k_most != 0;
   turning_ = options_.rotary_inertia && rates.dynamic();
-  fluid_.prepare(section_.fluid, rates, forcing, track_);
+  fluid_.prepare(section_, sections_, rates, forcing, track_);
   const double L = forcing.length, EI = section_.K_bt.head<2>().maxCoeff();
   scale_ = {L, EI / (L * L), EI / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  const double k = k_ + fluid_.stiffness();
+  const double k = k_most + fluid_.stiffness();
   noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (EI * forcing.tolerance));
   free_modes_.clear();
   for (std::size_t a = 0; a < modes_.size(); ++a) {
@@ -158,16 +204,29 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   growth_ = cprsim::growth_exponent(section_, section_.K_bt, Vec3::Zero(), L, k, N);
 }
 
+/// ∫ Phi^T C B Phi q ds of one mode in an element, per its length.
+Eigen::RowVectorXd StrainRod::weighted_by_damping(const StrainMode& mode, std::size_t element,
+                                                  const Eigen::RowVectorXd& q) const {
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(q.size());
+  for (Eigen::Index i = 0; i < rule_.points(); ++i) {
+    const std::size_t at =
+        element * static_cast<std::size_t>(rule_.points()) + static_cast<std::size_t>(i);
+    sum += rule_.gauss.weights[i] * compliance(mode, at) * damping(mode, at) *
+           q.dot(rule_.phi.col(i)) * rule_.phi.col(i).transpose();
+  }
+  return sum;
+}
+
 // (4) with xi_t = c_v q + q_h, divided by K + c_v B: q + C B q_h - C ∫ Phi^T Lambda = 0.
 void StrainRod::update_point_inputs() {
   const auto n = static_cast<Eigen::Index>(points_.size());
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    b_[i] = -section_.weighing_mass() * forcing_.gravity;
+    b_[i] = -section(i).weighing_mass() * forcing_.gravity;
     if (forcing_.relaxation > 0) b_[i] -= forcing_.relaxation * marked_[i];
     if (!rates_.dynamic()) continue;
-    b_[i] +=
-        section_.rhoA * (rates_.c_w * track_.x_h.segment<3>(3 * j) + track_.v_h.segment<3>(3 * j));
+    b_[i] += section(i).rhoA *
+             (rates_.c_w * track_.x_h.segment<3>(3 * j) + track_.v_h.segment<3>(3 * j));
     if (!turning_) continue;
     std::copy_n(rotation_track_.x_h.data() + 3 * j, 3, rotary_[i].theta_h);
     std::copy_n(rotation_track_.v_h.data() + 3 * j, 3, rotary_[i].omega_h);
@@ -179,8 +238,13 @@ void StrainRod::update_point_inputs() {
   for (MatX& q : q_0_) {
     q = Eigen::Map<const MatX>(history, q.rows(), q.cols());
     history += q.size();
-    for (std::size_t a = 0; a < modes_.size(); ++a)
-      q.row(static_cast<Eigen::Index>(a)) *= compliance(modes_[a]) * modes_[a].damping;
+    for (std::size_t a = 0; a < modes_.size(); ++a) {
+      auto row = q.row(static_cast<Eigen::Index>(a));
+      if (sections_.empty())
+        row *= compliance(modes_[a]) * modes_[a].damping;
+      else
+        row = weighted_by_damping(modes_[a], static_cast<std::size_t>(&q - q_0_.data()), row);
+    }
   }
 }
 
@@ -195,7 +259,8 @@ void StrainRod::apply_load(std::size_t node, NodeState& state) const {
 }
 
 Vec3 StrainRod::strain(std::size_t element, const Eigen::Ref<const VecX>& phi, bool turns) const {
-  Vec3 sum = turns ? section_.u_rest : Vec3(Vec3::UnitZ());
+  Vec3 sum = Vec3::UnitZ();
+  if (turns) sum = rest_curvature(element, phi);
   for (std::size_t a : free_modes_)
     if (modes_[a].turns == turns)
       sum += q_[element].row(static_cast<Eigen::Index>(a)).dot(phi) * modes_[a].axis;
@@ -225,7 +290,7 @@ void StrainRod::evaluate_rotary_inertia(std::size_t point) {
   struct {
     double rhoJ[3], c_v, c_w;
     bool body_rates;
-  } model{{section_.rhoJ.x(), section_.rhoJ.y(), section_.rhoJ.z()},
+  } model{{section(point).rhoJ.x(), section(point).rhoJ.y(), section(point).rhoJ.z()},
           rates_.c_v,
           rates_.c_w,
           rates_.body_rates};
@@ -263,8 +328,9 @@ void StrainRod::project_law(std::size_t e) {
     const StrainMode& mode = modes_[free_modes_[f]];
     VecX row = (q_[e].row(a) + q_0_[e].row(a)).transpose();
     for (Eigen::Index i = 0; i < G; ++i) {
-      const Vec3 Lambda = own_wrench(mode, first + static_cast<std::size_t>(i));
-      row -= compliance(mode) * rule_.gauss.weights[i] * mode.axis.dot(Lambda) * rule_.phi.col(i);
+      const std::size_t at = first + static_cast<std::size_t>(i);
+      row -= compliance(mode, at) * rule_.gauss.weights[i] * mode.axis.dot(own_wrench(mode, at)) *
+             rule_.phi.col(i);
     }
     law_residual_.segment(first_unknown(e, f), rule_.functions()) = row / unit(mode);
   }
@@ -298,7 +364,7 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
     const auto k = static_cast<std::size_t>(i);
     point[i].p = p0 + integral(i, [&](Eigen::Index j) { return point[j].tau; });
     const std::size_t at = e * static_cast<std::size_t>(G) + k;
-    n_s[k] = k_ * point[i].p + b_[at];
+    n_s[k] = k_[at] * point[i].p + b_[at];
     if (fluid_.acts()) n_s[k] += fluid_force(at);
     n_end += h * w[i] * n_s[k];
   }

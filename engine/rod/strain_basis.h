@@ -9,11 +9,13 @@
 //   R_s = R u^    by Magnus steps between the element's Gauss points (engine/rod/magnus.h)     (2)
 //   p_s = R v,  n_s = k p + b,  m_s = -p_s × n + t   by the integration matrix of these points  (3)
 //   ∫ Phi^T B^T (K (xi - xi_rest) + D xi_t - Lambda) ds = 0                                   (4)
-// (4) is the law tested with the basis itself; K, D diagonal; Lambda = (R^T m, R^T n); k, b, t as
-// in engine/rod/cell.h. Deviations from the source: the wrench comes from the strong balance (3) at
-// the quadrature points instead of from the principle of virtual work, which needs no second
-// derivatives and differs by the quadrature's error; positions are integrated in the world instead
-// of in SE(3), so that they and the forces use one rule.
+// Where sections vary along the rod their compliance stays under the integral of (4), which then is
+// the law in the form xi = xi_rest + C (Lambda - D xi_t); a rest curvature that varies is projected
+// onto Phi as the strains are. (4) is the law tested with the basis itself; K, D diagonal; Lambda =
+// (R^T m, R^T n); k, b, t as in engine/rod/cell.h. Deviations from the source: the wrench comes
+// from the strong balance (3) at the quadrature points instead of from the principle of virtual
+// work, which needs no second derivatives and differs by the quadrature's error; positions are
+// integrated in the world instead of in SE(3), so that they and the forces use one rule.
 //
 // With tendons Lambda is the total wrench and the rod's part of it is Lambda less theirs
 // (engine/section/tendon_law.h), which is asked at the Gauss points.
@@ -34,6 +36,7 @@
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/strain_rule.h"
 #include "engine/rod/tendon_border.h"
+#include "engine/section/along.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -43,8 +46,9 @@ struct StrainOptions {
   int elements = 1;  ///< at least; point loads cut further
   bool extension = false, shear = false;
   bool rotary_inertia = false, damping = false, drag = false;
-  std::vector<double> stations;  ///< s / L of point loads
-  std::vector<Tendon> tendons;   ///< whose breaks are stations, too
+  std::vector<double> stations;                ///< s / L of point loads
+  std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
+  std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
 /// One column of B.
@@ -139,6 +143,24 @@ class StrainRod final : public RodModel, private TensionedRod {
   // section and its law
   void list_modes(const Mat3& R_WBase);
   double compliance(const StrainMode& mode) const;
+  double compliance(const StrainMode& mode, std::size_t point) const;
+  void list_sections();
+
+  const SectionProperties& section(std::size_t point) const {
+    return sections_.empty() ? section_ : sections_[point];
+  }
+
+  /// Stiffness and damping along a mode at a point.
+  double stiffness(const StrainMode& mode, std::size_t point) const;
+  double damping(const StrainMode& mode, std::size_t point) const;
+
+  Vec3 rest_curvature(std::size_t element, const Eigen::Ref<const VecX>& phi) const {
+    return rest_.empty() ? section_.u_rest : Vec3(rest_[element] * phi);
+  }
+
+  bool bent_at_rest() const {
+    return options_.along ? options_.along->bent_at_rest() : !section_.u_rest.isZero();
+  }
 
   double unit(const StrainMode& mode) const { return mode.turns ? 1 / scale_.length : 1; }
 
@@ -182,7 +204,12 @@ class StrainRod final : public RodModel, private TensionedRod {
   Vec3 fluid_force(std::size_t point);
   void apply_load(std::size_t node, NodeState& state) const;
   void update_point_inputs();
+  Eigen::RowVectorXd weighted_by_damping(const StrainMode& mode, std::size_t element,
+                                         const Eigen::RowVectorXd& q) const;
   void add_row(RodResidual& r, double value, int row) const;
+
+  void add_strain_energy(RodEnergy& energy) const;
+  void add_varying_strain_energy(RodEnergy& energy) const;
 
   // its linearisation
   void vary_element(std::size_t element, Rows12& y);
@@ -196,10 +223,13 @@ class StrainRod final : public RodModel, private TensionedRod {
   std::string name_;
   EndCondition base_, tip_;
   MotionSpace space_;
-  SectionProperties section_;
+  SectionProperties section_;                ///< of the base, if they vary
+  std::vector<SectionProperties> sections_;  ///< of the points; empty: the same everywhere
   StrainOptions options_;
   StrainRule rule_;
   std::vector<double> grid_;  ///< borders of elements, s / L
+  std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>>
+      rest_;  ///< per element, 3 × functions: the rest curvature, where it varies
   std::vector<StrainMode> modes_;
   std::vector<std::size_t> free_modes_;  ///< now: of modes_
   std::vector<std::size_t> load_at_;     ///< border of forcing_.loads[i]
@@ -210,8 +240,9 @@ class StrainRod final : public RodModel, private TensionedRod {
   RodScale scale_;
   double noise_ = 1;  ///< row scales grow by this where round-off exceeds the tolerance
   double growth_ = 0;
-  double k_ = 0;         ///< N/m², of (3)
-  std::vector<Vec3> b_;  ///< N/m at the points
+  std::vector<double> k_;  ///< N/m² at the points, of (3)
+  bool inertia_ = false;   ///< whether any is not 0
+  std::vector<Vec3> b_;    ///< N/m at the points
   Immersion fluid_;
   std::vector<MatX> q_0_;  ///< per element, modes × functions: what damping adds to q in (4)
 

@@ -80,16 +80,16 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
     }
   }
   vary_gap(e, tau.size(), phi);
-  const auto integral = [&](std::size_t i, const std::vector<Rows3>& rate, double factor,
+  const auto integral = [&](std::size_t i, const std::vector<Rows3>& rate, const double* factor,
                             Rows3& sum) {
     for (std::size_t j = 0; j < rate.size(); ++j)
-      sum += (factor * h *
+      sum += ((factor ? factor[j] : 1) * h *
               rule_.integrate(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))) *
              rate[j];
   };
   for (std::size_t i = 0; i < tau.size(); ++i) {
     point_moves_[first + i] = y.middleRows<3>(3);
-    integral(i, tau, 1, point_moves_[first + i]);
+    integral(i, tau, nullptr, point_moves_[first + i]);
   }
   const std::vector<Rows3> p(point_moves_.begin() + static_cast<std::ptrdiff_t>(first),
                              point_moves_.begin() + static_cast<std::ptrdiff_t>(first) + G);
@@ -102,8 +102,8 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const StrainPoint& point = points_[first + i];
     n[i] = y.middleRows<3>(6);
-    if (k_ != 0) integral(i, p, k_, n[i]);
-    if (fluid_.acts()) integral(i, fluid, 1, n[i]);
+    if (inertia_) integral(i, p, &k_[first], n[i]);
+    if (fluid_.acts()) integral(i, fluid, nullptr, n[i]);
     m_s[i] = hat(point.n) * tau[i] - hat(point.tau) * n[i];
     if (turning_)
       m_s[i] +=
@@ -111,7 +111,7 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
   }
   for (std::size_t i = 0; i < tau.size(); ++i) {
     m[i] = y.middleRows<3>(9);
-    integral(i, m_s, 1, m[i]);
+    integral(i, m_s, nullptr, m[i]);
   }
   vary_law(e, n, m);
   if (tendons_) vary_tendons(e);
@@ -119,7 +119,7 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const double hw = h * rule_.gauss.weights[static_cast<Eigen::Index>(i)];
     y.middleRows<3>(3) += hw * tau[i];
-    if (k_ != 0) y.middleRows<3>(6) += (hw * k_) * p[i];
+    if (inertia_) y.middleRows<3>(6) += (hw * k_[first + i]) * p[i];
     if (fluid_.acts()) y.middleRows<3>(6) += hw * fluid[i];
     y.middleRows<3>(9) += hw * m_s[i];
   }
@@ -139,7 +139,7 @@ void StrainRod::vary_law(std::size_t e, const std::vector<Rows3>& n, const std::
       // axis · (dW + W × phi) = axis · dW + (axis × W) · phi
       const Eigen::RowVectorXd Lambda =
           axis.transpose() * (mode.turns ? m[j] : n[j]) - arm.transpose() * point_turns_[at];
-      const double C = compliance(mode) * rule_.gauss.weights[i] / unit(mode);
+      const double C = compliance(mode, at) * rule_.gauss.weights[i] / unit(mode);
       for (Eigen::Index k = 0; k < functions; ++k)
         rows.row(k) -= C * rule_.phi(k, i) * Lambda;
     }
@@ -158,13 +158,13 @@ void StrainRod::vary_tendons(std::size_t e) {
     return axis;
   };
   for (Eigen::Index i = 0; i < G; ++i) {
-    const Mat6 K =
-        stiffness_of(tendons_->at(e * static_cast<std::size_t>(G) + static_cast<std::size_t>(i)));
+    const std::size_t at = e * static_cast<std::size_t>(G) + static_cast<std::size_t>(i);
+    const Mat6 K = stiffness_of(tendons_->at(at));
     for (std::size_t f = 0; f < free_modes_.size(); ++f)
       for (std::size_t g = 0; g < free_modes_.size(); ++g) {
         const StrainMode &row = modes_[free_modes_[f]], &column = modes_[free_modes_[g]];
-        const double factor = compliance(row) / unit(row) * unit(column) * rule_.gauss.weights[i] *
-                              six(row).dot(K * six(column));
+        const double factor = compliance(row, at) / unit(row) * unit(column) *
+                              rule_.gauss.weights[i] * six(row).dot(K * six(column));
         law_columns_.block(first_unknown(e, f), states + first_unknown(e, g), functions,
                            functions) += factor * rule_.phi.col(i) * rule_.phi.col(i).transpose();
       }
@@ -208,7 +208,7 @@ void StrainRod::add_tension(Eigen::Index unknown, bool add) {
       const StrainMode& mode = modes_[free_modes_[f]];
       const double along = mode.axis.dot(Lambda.segment<3>(mode.turns ? 0 : 3));
       law_residual_.segment(first_unknown(e, f), rule_.functions()) +=
-          compliance(mode) * rule_.gauss.weights[i] / unit(mode) * along * rule_.phi.col(i);
+          compliance(mode, j) * rule_.gauss.weights[i] / unit(mode) * along * rule_.phi.col(i);
     }
   }
 }

@@ -41,10 +41,12 @@ void StrainRod::bow(const Port& base, const Port& tip) {
     const Mat3 now = rotation_of(start_);
     R = rotation_between(now.col(2), base.R.col(2)) * now;
   }
-  const Vec3 unloaded = R * right_jacobian(-forcing_.length * section_.u_rest).col(2);
+  const Vec3 unloaded = options_.along
+                            ? Vec3(R * options_.along->unloaded(1, forcing_.length).p)
+                            : Vec3(R * right_jacobian(-forcing_.length * section_.u_rest).col(2));
   if (!base_.fixed() && ratio > 1e-6) R = rotation_between(unloaded, chord) * R;
   set_unloaded({R, base.p});
-  if (!section_.u_rest.isZero()) return;  // a bent rod knows where to go
+  if (bent_at_rest()) return;  // a bent rod knows where to go
   const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
   // about the weaker axis
   const bool second = modes_[1].turns && space_.freedoms() == 6 && modes_[1].K < modes_[0].K;
@@ -205,7 +207,7 @@ RodSample StrainRod::observe() const {
     const VecX phi = legendre(x, rule_.order);
     point.curvature = strain(e, phi, true);
     point.shear_stretch = strain(e, phi, false);
-    point.rest_curvature = section_.u_rest;
+    point.rest_curvature = rest_curvature(e, phi);
     point.velocity = track_.v.segment<3>(3 * static_cast<Eigen::Index>(moving));
     sample.points.push_back(point);
     return sample.points.back();
@@ -259,8 +261,9 @@ RodField StrainRod::field() const {
           point.m += weights[i] * points_[first + static_cast<std::size_t>(i)].m;
         }
         f.points.push_back(point);
+        const double begin = grid_[e], width = grid_[e + 1] - begin, s = begin + width * x;
+        if (options_.along) f.sections.push_back(options_.along->at(s, begin + 0.5 * width));
         if (!tendons_) continue;
-        const double s = grid_[e] + (grid_[e + 1] - grid_[e]) * x;
         const VecX phi = legendre(x, rule_.order);
         MatX held;
         const Mat6 stiffness =
@@ -274,20 +277,8 @@ RodField StrainRod::field() const {
   return f;
 }
 
-RodEnergy StrainRod::energy() const {
-  RodEnergy energy;
-  for (std::size_t j = 0; j < points_.size(); ++j) {
-    const auto G = static_cast<std::size_t>(rule_.points());
-    const double weight = length_of(j / G) * rule_.gauss.weights[static_cast<Eigen::Index>(j % G)];
-    energy.kinetic += weight * 0.5 * section_.rhoA *
-                      track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)).squaredNorm();
-    energy.gravity -= weight * section_.weighing_mass() * forcing_.gravity.dot(points_[j].p);
-    if (options_.drag) fluid_.add_power(j, points_[j].R.col(2), weight, track_, energy);
-    if (rotary_.empty()) continue;
-    const Vec3 omega = vec(rotary_[j].omega);
-    energy.kinetic += weight * 0.5 * omega.dot(section_.rhoJ.cwiseProduct(omega));
-  }
-  // the polynomials are orthonormal
+// The polynomials are orthonormal.
+void StrainRod::add_strain_energy(RodEnergy& energy) const {
   const double* rate = track_.v.data() + position_coordinates();
   for (std::size_t e = 0; e < elements(); ++e)
     for (Eigen::Index k = 0; k < rule_.functions(); ++k)
@@ -298,6 +289,47 @@ RodEnergy StrainRod::energy() const {
         energy.damping_power += length_of(e) * modes_[a].damping * *rate * *rate;
         ++rate;
       }
+}
+
+void StrainRod::add_varying_strain_energy(RodEnergy& energy) const {
+  const Eigen::Index G = rule_.points();
+  const double* rate = track_.v.data() + position_coordinates();
+  for (std::size_t e = 0; e < elements(); ++e) {
+    const Eigen::Map<const MatX> q_t(rate, q_[e].rows(), options_.damping ? q_[e].cols() : 0);
+    if (options_.damping) rate += q_[e].size();
+    for (Eigen::Index i = 0; i < G; ++i) {
+      const std::size_t at = e * static_cast<std::size_t>(G) + static_cast<std::size_t>(i);
+      const double weight = length_of(e) * rule_.gauss.weights[i];
+      for (std::size_t a = 0; a < modes_.size(); ++a) {
+        const auto row = static_cast<Eigen::Index>(a);
+        const double strained = q_[e].row(row).dot(rule_.phi.col(i));
+        if (modes_[a].listed)
+          energy.elastic += 0.5 * weight * stiffness(modes_[a], at) * strained * strained;
+        if (!options_.damping) continue;
+        const double strain_t = q_t.row(row).dot(rule_.phi.col(i));
+        energy.damping_power += weight * damping(modes_[a], at) * strain_t * strain_t;
+      }
+    }
+  }
+}
+
+RodEnergy StrainRod::energy() const {
+  RodEnergy energy;
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    const auto G = static_cast<std::size_t>(rule_.points());
+    const double weight = length_of(j / G) * rule_.gauss.weights[static_cast<Eigen::Index>(j % G)];
+    energy.kinetic += weight * 0.5 * section(j).rhoA *
+                      track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)).squaredNorm();
+    energy.gravity -= weight * section(j).weighing_mass() * forcing_.gravity.dot(points_[j].p);
+    if (options_.drag) fluid_.add_power(j, points_[j].R.col(2), weight, track_, energy);
+    if (rotary_.empty()) continue;
+    const Vec3 omega = vec(rotary_[j].omega);
+    energy.kinetic += weight * 0.5 * omega.dot(section(j).rhoJ.cwiseProduct(omega));
+  }
+  if (sections_.empty())
+    add_strain_energy(energy);
+  else
+    add_varying_strain_energy(energy);
   // what a unit feed brings in, see ShootingRod::energy
   const VecX phi = legendre(0, rule_.order);
   double density = 0;

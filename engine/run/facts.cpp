@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/rod/shooting.h"
+#include "engine/section/along.h"
 
 namespace cprsim {
 namespace {
@@ -32,6 +33,13 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   f.name = rod.spec->name;
   f.length = L;
   f.mass = s.rhoA * L;
+  if (rod.spec->sections.size() > 1) {
+    constexpr int kPieces = 1000;
+    const SectionsAlong along(*rod.spec, false);
+    f.mass = 0;
+    for (int k = 0; k < kPieces; ++k)
+      f.mass += along.at((k + 0.5) / kPieces, (k + 0.5) / kPieces).rhoA * L / kPieces;
+  }
   f.bending_x = s.K_bt.x();
   f.bending_y = s.K_bt.y();
   f.torsion = s.K_bt.z();

@@ -61,7 +61,15 @@ void add_reactions(const End& end, MatX& K) {
 }
 
 ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool metric, double share) {
-  const RodField field = rod.model->field();
+  RodField field = rod.model->field();
+  if (metric) {  // by the material's length
+    field.added_mass = 0;
+    for (SectionProperties& section : field.sections) {
+      section.rhoA = field.rhoA;
+      section.rhoJ = field.rhoJ;
+      section.fluid.added_mass = 0;
+    }
+  }
   RodVariation own = rod_variation(field, rotary || metric);
   // of the metric: unit density along all rods
   if (metric) own.M *= share / field.rhoA;

@@ -104,17 +104,22 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       const std::size_t at = c * S + j;
       const FieldPoint& point = field.points[at];
       const double w = h * table.b[j];
+      const SectionProperties* own = field.sections.empty() ? nullptr : &field.sections[at];
+      const Vec3 &K_bt = own ? own->K_bt : field.K_bt, &K_se = own ? own->K_se : field.K_se,
+                 &rhoJ = own ? own->rhoJ : field.rhoJ;
+      const double rhoA = own ? own->rhoA : field.rhoA,
+                   added_mass = own ? own->fluid.added_mass : field.added_mass;
       Rows3 d = node.d.leftCols(active);
       for (std::size_t k = 0; k < S; ++k)
         d += h * table.a[j][k] * d_s[k];
       // (1); a product a·B b enters as half of itself, its transpose in the end
       auto K = out.K.topLeftCorner(active, active);
       const Eigen::Index psi = layout.at(at);
-      K.block<3, 3>(psi, psi) += 0.5 * w * point.R * field.K_bt.asDiagonal() * point.R.transpose();
+      K.block<3, 3>(psi, psi) += 0.5 * w * point.R * K_bt.asDiagonal() * point.R.transpose();
       K.middleRows<3>(psi) += 0.5 * w * (hat(point.m).transpose() * phi[j]);  // rows of psi
       for (std::size_t e = 0; e < layout.strains.size(); ++e) {
         const Eigen::Index i = psi + 3 + static_cast<Eigen::Index>(e);
-        K(i, i) += 0.5 * w * field.K_se[layout.strains[e]];
+        K(i, i) += 0.5 * w * K_se[layout.strains[e]];
       }
       if (!field.tendons.empty()) {
         // tendons are one more law of the section
@@ -129,14 +134,14 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       phi_all.middleRows<3>(row) = phi[j];
       half_all.middleRows<3>(row) = w * (0.5 * B * phi[j] + hat(point.n) * d_s[j]);
       d_all.middleRows<3>(row) = d;
-      dw_all.middleRows<3>(row) = (w * field.rhoA) * d;
-      if (field.added_mass > 0) {
+      dw_all.middleRows<3>(row) = (w * rhoA) * d;
+      if (added_mass > 0) {
         const Vec3 t = point.R.col(2);
-        dw_all.middleRows<3>(row) += (w * field.added_mass) * (d - t * (t.transpose() * d));
+        dw_all.middleRows<3>(row) += (w * added_mass) * (d - t * (t.transpose() * d));
       }
       if (rotary) {
         const Rows3 spin = point.R.transpose() * phi[j];
-        const Rows3 weighted = w * field.rhoJ.asDiagonal() * spin;
+        const Rows3 weighted = w * rhoJ.asDiagonal() * spin;
         out.M.topLeftCorner(active, active).noalias() += spin.transpose() * weighted;
       }
     }

@@ -36,7 +36,12 @@ class ContactCheck {
       complain(scene.simulation.place, 19, "contact of rods is not available in a <planar> scene",
                "leave <planar> out");
     for (const RodSpec& rod : scene.rods)
-      if ((touches(rod) || touches_itself(rod)) && !round_section(rod.section))
+      if ((touches(rod) || touches_itself(rod)) && rod.sections.size() > 1)
+        complain(rod.place, kRodCaret,
+                 "contact of rods is available for sections that do not vary: those of '" +
+                     rod.name + "' do",
+                 "give the rod <without>contact</without>");
+      else if ((touches(rod) || touches_itself(rod)) && !round_section(rod.section))
         complain(
             rod.place, kRodCaret,
             "contact of rods is available for round sections only: '" + rod.name + "' has another",

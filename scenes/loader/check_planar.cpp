@@ -115,7 +115,10 @@ class PlanarCheck {
   }
 
   void check(const RodSpec& rod) {
-    if (!rod.rest_curvature.isZero())
+    if (rod.sections.size() > 1)
+      complain(rod.place, 10,
+               "the sections of rod '" + rod.name + "' vary, which is known in space only");
+    if (!rod.rest_curvature.isZero() || !rod.rest_samples.empty())
       complain(rod.place, 10,
                "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
     const Method method = rod.method.value_or(scene_.solver.method);

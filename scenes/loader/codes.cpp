@@ -15,6 +15,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"E107", "a file lies outside the scene's folder and the resource paths, or on the network"},
       {"E108", "includes form a loop or are nested deeper than 8"},
       {"E109", "a mesh cannot be used"},
+      {"E110", "a table of numbers in a file cannot be used"},
       {"E201", "the file is not well-formed XML"},
       {"E202", "the file is not valid UTF-8, or holds control characters"},
       {"E203", "a document type or entity declaration; scenes may not have one"},

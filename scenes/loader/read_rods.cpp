@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "scenes/loader/reading.h"
+#include "scenes/loader/rest_table.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
 
@@ -70,31 +71,22 @@ bool mentioned(const Chain& chain, std::string_view name) {
   return false;
 }
 
-void read_section(Reading& r, const Chain& chain, RodSpec& rod) {
-  const Node* node = part(chain, "cross_section");
-  if (!node) {
-    if (!mentioned(chain, "cross_section"))
-      r.report.missing("E505", *chain.front(),
-                       describe(*chain.front()) + " has no <cross_section>");
-    return;
-  }
-  if (node->parent->all("cross_section").size() > 1)
-    r.report.error("E520", *node->parent->all("cross_section")[1],
-                   "cross-sections that vary along the rod are not available in this version",
-                   "available: one <cross_section>");
-  rod.section.place = node->place;
+/// The shape of a <cross_section>; nothing after an error.
+std::optional<SectionSpec> read_shape(Reading& r, const Node& node) {
+  SectionSpec section;
+  section.place = node.place;
+  section.s = number_attribute(node, "s", 0);
   const Node* shape = nullptr;
-  for (const auto& child : node->children) {
-    if (child->broken) return;
+  for (const auto& child : node.children) {
+    if (child->broken) return std::nullopt;
     if (shape) r.report.error("E304", *child, "a <cross_section> holds one shape");
     shape = child.get();
   }
   if (!shape) {
-    r.report.missing("E303", *node, "<cross_section> has no shape");
-    return;
+    r.report.missing("E303", node, "<cross_section> has no shape");
+    return std::nullopt;
   }
   const auto size = [&](const char* key) { return number_of(shape->child(key), 0); };
-  SectionSpec& section = rod.section;
   if (shape->name == "circle") {
     section.size = Vec2(size("radius"), 0);
   } else if (shape->name == "annulus") {
@@ -113,6 +105,44 @@ void read_section(Reading& r, const Chain& chain, RodSpec& rod) {
     if (axes && section.size.minCoeff() <= 0)
       r.report.bad_text("E306", *axes, "semi-axes must be positive");
   }
+  return section;
+}
+
+/// What several sections along a rod must fulfil besides.
+void check_order(Reading& r, const Node& node, const SectionSpec* before,
+                 const SectionSpec& section) {
+  const Attribute* s = node.attribute("s");
+  if (!s)
+    r.report.missing("E308", node, "of several cross-sections each needs its s");
+  else if (section.s > 1)
+    r.report.bad_value("E306", node, *s, "s is a fraction of the rod's length, at most 1");
+  else if (before && section.s < before->s)
+    r.report.bad_value("E306", node, *s, "cross-sections stand in the order of their s");
+  else if (before && section.s > before->s && section.shape != before->shape)
+    r.report.error("E506", node,
+                   "between two s the shape stays the same: give both shapes at the s where one "
+                   "follows the other");
+}
+
+void read_section(Reading& r, const Chain& chain, RodSpec& rod) {
+  const Node* node = part(chain, "cross_section");
+  if (!node) {
+    if (!mentioned(chain, "cross_section"))
+      r.report.missing("E505", *chain.front(),
+                       describe(*chain.front()) + " has no <cross_section>");
+    return;
+  }
+  const std::vector<const Node*> all = node->parent->all("cross_section");
+  for (const Node* one : all) {
+    const auto section = read_shape(r, *one);
+    if (!section) continue;
+    if (all.size() > 1)
+      check_order(r, *one, rod.sections.empty() ? nullptr : &rod.sections.back(), *section);
+    rod.sections.push_back(*section);
+  }
+  if (!rod.sections.empty()) rod.section = rod.sections.front();
+  rod.section.place = node->place;
+  if (rod.sections.size() < 2) rod.sections.clear();
 }
 
 void read_shear_modulus(Reading& r, const Chain& chain, MaterialSpec& material) {
@@ -173,8 +203,9 @@ void read_rest(Reading& r, const Chain& chain, RodSpec& rod) {
   if (!rest) return;
   const Node* curvature = rest->child("curvature");
   const Node* helix = rest->child("helix");
-  if (curvature && helix)
-    r.report.error("E310", *helix, "give <curvature> or <helix>, not both");
+  const Node* file = rest->child("file");
+  if ((curvature != nullptr) + (helix != nullptr) + (file != nullptr) > 1)
+    r.report.error("E310", *rest, "give <curvature>, <helix> or <file>, one of them");
   else if (rest->children.empty())
     r.report.missing("E303", *rest, "<rest> has no shape").suggestion =
         "<curvature>bending_x bending_y twist</curvature>";
@@ -184,9 +215,18 @@ void read_rest(Reading& r, const Chain& chain, RodSpec& rod) {
                  c = number_of(helix->child("pitch"), 0) / (2 * std::numbers::pi);
     if (radius > 0) rod.rest_curvature = Vec3(0, radius, c) / (radius * radius + c * c);
   }
-  const SectionSpec& section = rod.section;
-  const double half = section.size.maxCoeff() / (section.shape == SectionShape::kRectangle ? 2 : 1);
-  if (rod.rest_curvature.head<2>().norm() * half >= 1)
+  if (file) rod.rest_samples = read_rest_table(r, *file);
+  double half = 0, bend = rod.rest_curvature.head<2>().norm();
+  const auto widen = [&](const SectionSpec& section) {
+    half = std::max(half,
+                    section.size.maxCoeff() / (section.shape == SectionShape::kRectangle ? 2 : 1));
+  };
+  widen(rod.section);
+  for (const SectionSpec& section : rod.sections)
+    widen(section);
+  for (const RestSample& sample : rod.rest_samples)
+    bend = std::max(bend, sample.curvature.head<2>().norm());
+  if (bend * half >= 1)
     r.report.error("E506", *rest,
                    "without load " + describe(*chain.front()) +
                        " would be bent more tightly than its own thickness allows");

@@ -125,7 +125,7 @@ TEST(RestShapes, MustBeOneAndPossible) {
   EXPECT_EQ(codes("<curvature>0 1 0</curvature><helix><radius>1</radius><pitch>1</pitch></helix>"),
             Codes{"E310"});
   EXPECT_EQ(codes("<helix><radius>-1</radius><pitch>1</pitch></helix>"), Codes{"E306"});
-  EXPECT_EQ(codes("<file>shape.csv</file>"), Codes{"E520"});
+  EXPECT_EQ(codes("<file>shape.csv</file>"), Codes{"E106"});
 }
 
 TEST(Loads, ActOnBodiesAndRodPoints) {

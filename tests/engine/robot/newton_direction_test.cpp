@@ -143,6 +143,25 @@ TEST(NewtonDirection, IsExactForEveryEffectAlone) {
   }
 }
 
+TEST(NewtonDirection, IsExactForSectionsAndRestShapesThatVary) {
+  Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+  for (RodSpec& rod : scene.rods) {
+    rod.stiffness = {};
+    rod.material = MaterialSpec{250, 2e7, 8e6, {}};
+    SectionSpec tip = rod.section;
+    rod.section.s = 0;
+    tip.s = 1;
+    tip.size *= 0.7;
+    rod.sections = {rod.section, tip};
+    rod.rest_samples = {{0, {0.8, -1.2, 0.6}}, {0.3, {0.2, 0.4, 1}}, {1, {-0.5, 0, 1.1}}};
+  }
+  expect_exact(scene, {}, "statics");
+  expect_exact(scene, {Mode::kBackwardEuler}, "dynamics");
+  set_all_effects(scene);
+  scene.effects.set(Effect::kDrag, true);
+  expect_exact(scene, {Mode::kGeneralizedAlpha}, "dynamics, everything");
+}
+
 TEST(NewtonDirection, IsExactInAFluid) {
   for (bool stretches : {false, true}) {
     Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
