@@ -7,6 +7,7 @@
 
 #include "scenes/loader/reading.h"
 #include "scenes/loader/values.h"
+#include "scenes/loader/weigh.h"
 
 namespace cprsim {
 
@@ -37,6 +38,7 @@ void check_masses(Reading& r) {
             .suggestion = "give mass and inertia, or make its model <static>";
       continue;
     }
+    if (computes_inertia(*inertial)) continue;
     if (!given_anywhere(*inertial, "mass"))
       r.report.missing("E501", *inertial,
                        "<inertial> of movable " + describe(link) + " has no <mass>");

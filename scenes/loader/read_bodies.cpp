@@ -8,6 +8,7 @@
 #include "scenes/loader/meshes.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/values.h"
+#include "scenes/loader/weigh.h"
 
 namespace cprsim {
 
@@ -117,6 +118,9 @@ ShapeSpec read_geometry(Reading& r, const Node& owner) {
 }
 
 void read_inertial(Reading& r, const Node& node, BodySpec& body) {
+  if (const Node* density = node.child("density"))
+    r.report.error("E310", *density, "<density> is for <inertial auto=\"true\">",
+                   "add auto=\"true\", or write mass and inertia");
   const Node* inertia = node.child("inertia");
   body.mass = number_of(node.child("mass"), 0);
   const Pose X_BI = read_pose(node.child("pose"), r.report);
@@ -227,7 +231,9 @@ void read_bodies(Reading& r, const Node&) {
     body.X_WB = r.frames.X_W(vertex);
     body.is_static = r.frames.scopes()[at(v.scope)].is_static;
     body.gravity = flag_of(link.child("gravity"), true);
-    if (const Node* inertial = link.child("inertial")) read_inertial(r, *inertial, body);
+    const Node* inertial = link.child("inertial");
+    const bool weighed = inertial && computes_inertia(*inertial);
+    if (inertial && !weighed) read_inertial(r, *inertial, body);
     if (const Node* decay = link.child("velocity_decay")) {
       body.linear_decay = number_of(decay->child("linear"), 0);
       body.angular_decay = number_of(decay->child("angular"), 0);
@@ -235,6 +241,7 @@ void read_bodies(Reading& r, const Node&) {
     unique_names(r, link, "visual");
     unique_names(r, link, "collision");
     read_shapes_of(r, link, vertex, body);
+    if (weighed) weigh(r, link, *inertial, body);
     r.scene.bodies.push_back(std::move(body));
   }
   for (int vertex = 0; vertex < static_cast<int>(r.frames.vertices().size()); ++vertex) {

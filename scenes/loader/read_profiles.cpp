@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "scenes/loader/reading.h"
+#include "scenes/loader/suggest.h"
+#include "scenes/loader/table.h"
 #include "scenes/loader/values.h"
 
 namespace cprsim {
@@ -72,6 +74,43 @@ bool read_expression(Reading& r, const Node& node, ProfileTerm& term) {
   return true;
 }
 
+// Samples of a recording or a measurement: a cubic spline, whose second derivative is continuous,
+// so that steps of an integrator need not end at them. False after an error.
+bool read_samples(Reading& r, const Node& node, ProfileTerm& term) {
+  term.shape = ShapeOfTime::kKeyframes;
+  term.interpolation = Interpolation::kCubic;
+  const Attribute* const file = node.attribute("file");
+  const auto table = file ? read_table(r, node, file) : std::nullopt;
+  if (!table) return false;
+  std::size_t columns[2] = {0, 0};
+  for (const int i : {0, 1}) {
+    const Attribute* const named = node.attribute(i == 0 ? "time" : "value");
+    if (!named) continue;
+    const auto column = table->column(named->value);
+    if (!column) {
+      Diagnostic& d = r.report.bad_value(
+          "E110", node, *named, "'" + file->value + "' has no column '" + named->value + "'",
+          nearest_name(named->value, table->names));
+      for (const std::string& name : table->names)
+        d.details.push_back("it has '" + name + "'");
+      return false;
+    }
+    columns[i] = *column;
+  }
+  for (std::size_t i = 0; i < table->rows.size(); ++i) {
+    const double t = table->rows[i][columns[0]];
+    if (!term.times.empty() && t <= term.times.back()) {
+      complain_of_table(r, node, file,
+                        "line " + std::to_string(table->lines[i]) + ": time does not ascend");
+      return false;
+    }
+    term.times.push_back(t);
+    term.values.push_back(table->rows[i][columns[1]]);
+  }
+  finish_keyframes(term);
+  return true;
+}
+
 bool read_term(Reading& r, const Node& node, ProfileTerm& term) {
   if (node.name == "constant") {
     term.value = number_attribute(node, "value", 0);
@@ -95,6 +134,8 @@ bool read_term(Reading& r, const Node& node, ProfileTerm& term) {
     read_trapezoid(r, node, term);
   } else if (node.name == "chirp") {
     read_chirp(r, node, term);
+  } else if (node.name == "csv") {
+    return read_samples(r, node, term);
   } else if (node.name == "expression") {
     return read_expression(r, node, term);
   } else if (node.name == "keyframes") {

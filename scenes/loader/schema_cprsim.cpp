@@ -10,8 +10,6 @@ using T = ValueType;
 using S = Status;
 
 constexpr auto kTimed = "cprsim:profile cprsim:drive cprsim:load";
-constexpr auto kShapes =
-    "available: constant, step, ramp, smoothstep, trapezoid, sine, chirp, keyframes, expression";
 
 std::vector<ElementRule> rod_elements() {
   constexpr auto kRod = "cprsim:rod cprsim:rod_class";
@@ -171,7 +169,8 @@ std::vector<ElementRule> action_elements() {
        "A sine whose frequency grows linearly from f0 to f1."},
       {kTimed, "trapezoid", "", T::kEmpty, "", '*', S::kSupported,
        "From start to end, with constant acceleration, speed, deceleration."},
-      {kTimed, "csv", "", T::kAny, kShapes, '*', S::kLater, "From a file."},
+      {kTimed, "csv", "csv_profile", T::kEmpty, "", '*', S::kSupported,
+       "Columns of a file: the cubic spline through its samples."},
       {kTimed, "expression", "", T::kText, "", '*', S::kSupported,
        "A smooth formula of t, as in 0.1 * sin(2 * pi * t)^2."},
       {"world model", "cprsim:joint", "", T::kGroup, "", '*', S::kSupported,
@@ -318,6 +317,11 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"sine", "phase", T::kNumber, "rad", false, yes, "Phase at start."},
       {"sine", "start", T::kNonNegative, "s", false, yes, "0 before."},
       {"sine", "end", T::kNonNegative, "s", false, yes, "0 after."},
+      {"csv_profile", "file", T::kText, "", true, yes, "The file, beside the scene."},
+      {"csv_profile", "time", T::kText, "", false, yes,
+       "Its column of times, s: name or number; the first."},
+      {"csv_profile", "value", T::kText, "", true, yes,
+       "Its column of values: name or number from 1."},
       {"keyframes", "interpolation", T::kChoice, "step|linear|pchip|cubic", false, yes,
        "Between the keys."},
       {"cprsim:joint", "type", T::kChoice, "cylindrical|planar", true, yes, "Kind of joint."},
