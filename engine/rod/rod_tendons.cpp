@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "engine/section/tendon_law.h"
 
@@ -46,6 +47,7 @@ RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
     for (std::size_t i = 0; i < sections.size(); ++i)
       squared = std::max(squared, Eigen::Map<const Vec3>(places_[n * i + k].r).squaredNorm());
     slackness_.push_back(length * squared / EI);
+    units_.push_back(EI / (length * std::sqrt(squared)));
   }
   x_.assign(n, 0);
   prescribed_ = unloaded_;

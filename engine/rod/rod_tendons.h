@@ -59,6 +59,10 @@ class RodTendons {
 
   void move(double alpha, const VecX& x) { set_values(kept_ + alpha * x); }
 
+  double unit(Eigen::Index unknown) const {  ///< N, of a tension that bends the rod
+    return units_[unknown_[static_cast<std::size_t>(unknown)]];
+  }
+
   VecX gaps() const;             ///< (1)
   VecX gaps_by_tension() const;  ///< by its own x, where it hangs slack
   /// Rates of (1) at rates of (u, v), one of every section.
@@ -83,6 +87,7 @@ class RodTendons {
   std::vector<TendonSection> sections_;
   std::vector<double> unloaded_;        ///< lengths along the unloaded rod, by the same quadrature
   std::vector<double> slackness_;       ///< c of (1), m/N
+  std::vector<double> units_;           ///< EI / (L r), N
   std::vector<std::size_t> unknown_;    ///< tendons with unknown tension
   std::vector<double> x_, prescribed_;  ///< of all tendons: unknowns, and lengths (m)
   VecX kept_;

@@ -5,8 +5,9 @@
 //   y = Y_z z + Y_A zeta_A + Y_x x + y_0,    G y + D x + gap = 0                                (1)
 // A rod is linearised once as with given tensions and once for each unknown one, its residual then
 // being increased by the derivative by that tension; all is affine, so that the difference is Y_x.
-// (1) gives x by z and zeta_A, m small, and the two-port keeps its six z. Nothing of this runs in a
-// rod whose tensions are given.
+// Of the 6 + m entries of z and x (1), m small, leaves six free, which are the z of the whole. x
+// alone would not do as its pivots: with some choices of z a tension turns the rod's moments instead
+// of bending it. Nothing of this runs in a rod whose tensions are given.
 #pragma once
 
 #include "engine/rod/rod_model.h"
