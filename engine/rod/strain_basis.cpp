@@ -61,58 +61,6 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   set_unloaded(X_WBase);
 }
 
-void StrainRod::place_tendons() {
-  std::vector<AskedSection> sections;
-  for (std::size_t e = 0; e < elements(); ++e)
-    for (Eigen::Index i = 0; i < rule_.points(); ++i) {
-      const double s = grid_[e] + (grid_[e + 1] - grid_[e]) * rule_.gauss.points[i];
-      sections.push_back({s, s, (grid_[e + 1] - grid_[e]) * rule_.gauss.weights[i],
-                          rest_curvature(e, rule_.phi.col(i))});
-    }
-  tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.K_bt.head<2>().maxCoeff());
-}
-
-void StrainRod::list_sections() {
-  const SectionsAlong& along = *options_.along;
-  for (std::size_t e = 0; e < elements(); ++e) {
-    const double from = grid_[e], h = grid_[e + 1] - from;
-    Rows3 rest = Rows3::Zero(3, rule_.functions());
-    for (Eigen::Index i = 0; i < rule_.points(); ++i) {
-      const double s = from + h * rule_.gauss.points[i];
-      sections_.push_back(along.at(s, from + 0.5 * h));
-      rest += rule_.gauss.weights[i] * along.rest_curvature(s) * rule_.phi.col(i).transpose();
-    }
-    rest_.push_back(rest);
-  }
-}
-
-// In a plane a section bends about its axis along the normal, which is a principal one or all are
-// alike.
-void StrainRod::list_modes(const Mat3& R_WBase) {
-  const auto add = [&](const Vec3& axis, bool turns, bool listed) {
-    const Vec3 &K = turns ? section_.K_bt : section_.K_se,
-               &B = turns ? section_.B_bt : section_.B_se;
-    modes_.push_back({axis, turns, axis.dot(K.cwiseProduct(axis)),
-                      options_.damping ? axis.dot(B.cwiseProduct(axis)) : 0, listed});
-  };
-  if (space_.freedoms() == 3) {
-    Vec3 normal = R_WBase.transpose() * Vec3(space_.motion.block<3, 1>(0, 0));
-    normal.z() = 0;
-    normal.normalize();
-    add(normal, true, true);
-    if (options_.shear) add(Vec3::UnitZ().cross(normal), false, true);
-  } else {
-    for (int i = 0; i < 3; ++i)
-      add(Vec3::Unit(i), true, true);
-    for (int i = 0; i < 2 && options_.shear; ++i)
-      add(Vec3::Unit(i), false, true);
-  }
-  add(Vec3::UnitZ(), false, options_.extension);
-  for (std::size_t a = 0; a < modes_.size(); ++a)
-    if (modes_[a].listed) free_modes_.push_back(a);
-}
-
 // With constant u: R = R_0 exp(s u^), p = p_0 + s R_0 J_l(s u) z.
 void StrainRod::set_unloaded(const Pose& X_WBase) {
   for (MatX& q : q_)
@@ -141,32 +89,6 @@ void StrainRod::set_unloaded(const Pose& X_WBase) {
     point.tau = X_WBase.R.col(2);
   }
   evaluated_ = false;
-}
-
-double StrainRod::compliance(const StrainMode& mode) const {
-  double C = mode.listed ? 1 / (mode.K + rates_.c_v * mode.damping) : 0;
-  if (!mode.turns && mode.axis.z() != 0)
-    C += forcing_.axial_softness * forcing_.length * forcing_.length /
-         section_.K_bt.head<2>().maxCoeff();
-  return C;
-}
-
-double StrainRod::stiffness(const StrainMode& mode, std::size_t point) const {
-  const SectionProperties& own = section(point);
-  return mode.axis.dot((mode.turns ? own.K_bt : own.K_se).cwiseProduct(mode.axis));
-}
-
-double StrainRod::damping(const StrainMode& mode, std::size_t point) const {
-  const SectionProperties& own = section(point);
-  if (!options_.damping) return 0;
-  return mode.axis.dot((mode.turns ? own.B_bt : own.B_se).cwiseProduct(mode.axis));
-}
-
-double StrainRod::compliance(const StrainMode& mode, std::size_t point) const {
-  const double base = compliance(mode);
-  if (sections_.empty() || !mode.listed) return base;
-  return base + 1 / (stiffness(mode, point) + rates_.c_v * damping(mode, point)) -
-         1 / (mode.K + rates_.c_v * mode.damping);
 }
 
 void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
@@ -202,19 +124,6 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   for (const StrainPoint& point : points_)
     N = std::max(N, point.n.norm());
   growth_ = cprsim::growth_exponent(section_, section_.K_bt, Vec3::Zero(), L, k, N);
-}
-
-/// ∫ Phi^T C B Phi q ds of one mode in an element, per its length.
-Eigen::RowVectorXd StrainRod::weighted_by_damping(const StrainMode& mode, std::size_t element,
-                                                  const Eigen::RowVectorXd& q) const {
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(q.size());
-  for (Eigen::Index i = 0; i < rule_.points(); ++i) {
-    const std::size_t at =
-        element * static_cast<std::size_t>(rule_.points()) + static_cast<std::size_t>(i);
-    sum += rule_.gauss.weights[i] * compliance(mode, at) * damping(mode, at) *
-           q.dot(rule_.phi.col(i)) * rule_.phi.col(i).transpose();
-  }
-  return sum;
 }
 
 // (4) with xi_t = c_v q + q_h, divided by K + c_v B: q + C B q_h - C ∫ Phi^T Lambda = 0.
