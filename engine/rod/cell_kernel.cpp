@@ -349,13 +349,15 @@ const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kKirchhoff>[stages - 1];
     case CellLaw::kExtensibleStatic:
       return kKernels<CellLaw::kExtensibleStatic>[stages - 1];
+#ifdef CPRSIM_EVERY_LAW
     case CellLaw::kKirchhoffFluid:
       return kKernels<CellLaw::kKirchhoffFluid>[stages - 1];
     case CellLaw::kExtensibleFluid:
       return kKernels<CellLaw::kExtensibleFluid>[stages - 1];
     case CellLaw::kTendons:
       return kKernels<CellLaw::kTendons>[stages - 1];
-    case CellLaw::kExtensible:
+#endif
+    default:
       break;
   }
   return kKernels<CellLaw::kExtensible>[stages - 1];

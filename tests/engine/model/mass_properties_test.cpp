@@ -43,7 +43,7 @@ void expect_same(const MassProperties& a, const MassProperties& b, double tolera
   EXPECT_LT((a.inertia - b.inertia).norm(), tolerance * b.inertia.norm());
 }
 
-ShapeSpec shape(ShapeKind kind, const Vec3& size) {
+ShapeSpec solid_of(ShapeKind kind, const Vec3& size) {
   ShapeSpec spec;
   spec.kind = kind;
   spec.size = size;
@@ -52,18 +52,18 @@ ShapeSpec shape(ShapeKind kind, const Vec3& size) {
 
 TEST(MassProperties, SolidsOfRevolutionAreTheSumOfTheirDiscs) {
   const double r = 0.03, l = 0.2;
-  expect_same(mass_properties(shape(ShapeKind::kCylinder, {r, l, 0}), {}, kDensity),
+  expect_same(mass_properties(solid_of(ShapeKind::kCylinder, {r, l, 0}), {}, kDensity),
               of_discs([&](double) { return r; }, {-l / 2, l / 2}), 1e-12);
-  expect_same(mass_properties(shape(ShapeKind::kCone, {r, l, 0}), {}, kDensity),
+  expect_same(mass_properties(solid_of(ShapeKind::kCone, {r, l, 0}), {}, kDensity),
               of_discs([&](double z) { return r * (0.5 - z / l); }, {-l / 2, l / 2}), 1e-12);
   const auto ball = [](double radius, double z) {
     return std::sqrt(std::max(0.0, radius * radius - z * z));
   };
-  expect_same(mass_properties(shape(ShapeKind::kSphere, {r, 0, 0}), {}, kDensity),
+  expect_same(mass_properties(solid_of(ShapeKind::kSphere, {r, 0, 0}), {}, kDensity),
               of_discs([&](double z) { return ball(r, z); }, {-r, r}), 1e-12);
-  expect_same(mass_properties(shape(ShapeKind::kEllipsoid, {r, r, l}), {}, kDensity),
+  expect_same(mass_properties(solid_of(ShapeKind::kEllipsoid, {r, r, l}), {}, kDensity),
               of_discs([&](double z) { return r / l * ball(l, z); }, {-l, l}), 1e-12);
-  expect_same(mass_properties(shape(ShapeKind::kCapsule, {r, l, 0}), {}, kDensity),
+  expect_same(mass_properties(solid_of(ShapeKind::kCapsule, {r, l, 0}), {}, kDensity),
               of_discs(
                   [&](double z) {
                     const double beyond = std::abs(z) - l / 2;
@@ -86,9 +86,9 @@ MeshSpec box_mesh(const Vec3& size, const Vec3& at) {
 
 TEST(MassProperties, AMeshOfABoxIsTheBox) {
   const Vec3 size(0.25, 0.5, 1), at(2, -1, 0.5);  // numbers that a float holds
-  MassProperties box = mass_properties(shape(ShapeKind::kBox, size), {}, kDensity);
+  MassProperties box = mass_properties(solid_of(ShapeKind::kBox, size), {}, kDensity);
   box.com += at;
-  ShapeSpec spec = shape(ShapeKind::kMesh, Vec3::Ones());
+  ShapeSpec spec = solid_of(ShapeKind::kMesh, Vec3::Ones());
   spec.mesh = 0;
   MeshSpec mesh = box_mesh(size, at);
   EXPECT_TRUE(encloses_solid(mesh));
@@ -102,9 +102,9 @@ TEST(MassProperties, AMeshOfABoxIsTheBox) {
 
 TEST(MassProperties, HalvesJoinToTheWhole) {
   const Vec3 size(0.25, 0.5, 1);
-  const MassProperties whole = mass_properties(shape(ShapeKind::kBox, size), {}, kDensity);
+  const MassProperties whole = mass_properties(solid_of(ShapeKind::kBox, size), {}, kDensity);
   const MassProperties half =
-      mass_properties(shape(ShapeKind::kBox, {0.25, 0.25, 1}), {}, kDensity);
+      mass_properties(solid_of(ShapeKind::kBox, {0.25, 0.25, 1}), {}, kDensity);
   Pose left, right;
   left.p = Vec3(0, -0.125, 0);
   right.p = Vec3(0, 0.125, 0);
