@@ -138,6 +138,33 @@ TEST_P(Tendons, HangSlackRatherThanPush) {
   EXPECT_NEAR(both.robot.rods[0].model->tendons()[1].displacement, 0.5 * pulled, 1e-10);
 }
 
+// Rods that cannot stretch, in their weight, with the tendon on whichever side: found without help
+// at every fineness, by one method as by another.
+TEST_P(Tendons, PulledInByLittleAreFoundAtOnce) {
+  for (const double displaced : {-1e-3, 0., 1e-3, 3e-3}) {
+    Vec3 fine = Vec3::Zero();
+    for (const int order : {12, 6, 4, 3}) {
+      Scene scene = rod_with_tendons();
+      scene.solver.method = GetParam();
+      scene.solver.order = order;
+      scene.solver.points = 3 * order;
+      scene.solver.elements = GetParam() == Method::kStrain ? 1 : 2 * order;
+      switch_on(scene, {Effect::kGravity});
+      scene.gravity = {9.81, 0, 0};
+      add_tendon(scene, kOffset, 0, 0);
+      displace(scene, displaced);
+      const Equilibrium equilibrium(scene, 1e-11);
+      ASSERT_TRUE(equilibrium.report.converged()) << displaced << ", " << order;
+      EXPECT_LE(equilibrium.report.iterations, 12) << displaced << ", " << order;
+      if (order == 12)
+        fine = tip_of(equilibrium);
+      else
+        EXPECT_LT((tip_of(equilibrium) - fine).norm(), 1e-4 * kLength)
+            << displaced << ", " << order;
+    }
+  }
+}
+
 // They are fixed to the sections: a base turned in space turns the whole shape.
 TEST_P(Tendons, TurnWithTheRod) {
   Scene scene = finely(rod_with_tendons(), GetParam());

@@ -10,6 +10,7 @@
 #include "tests/support/methods.h"
 #include "tests/support/reference_arc.h"
 #include "tests/support/robots.h"
+#include "tests/support/tendons.h"
 
 namespace cprsim {
 namespace {
@@ -79,6 +80,38 @@ TEST_P(VaryingRod, AtRestFollowsAClothoid) {
   const double x = integral(0, kLength, [&](double s) { return std::sin(angle(s)); }),
                z = integral(0, kLength, [&](double s) { return std::cos(angle(s)); });
   EXPECT_LT((tip_of(scene, GetParam()) - Vec3(x, 0, z)).norm(), accuracy() * kLength);
+}
+
+// The moment T r of a parallel tendon bends each section by its own T r / EI.
+TEST_P(VaryingRod, BendsUnderATendonByItsOwnStiffness) {
+  Scene scene = tapered();
+  constexpr double kTension = 2, kOffset = 0.01;
+  add_tendon(scene, kOffset, std::numbers::pi / 2, kTension);
+  const auto turned = [&](double to) {
+    return integral(0, to, [&](double s) {
+      return kTension * kOffset / bending_stiffness_of(1.2e-3 - 0.6e-3 * s / kLength);
+    });
+  };
+  const double y = integral(0, kLength, [&](double s) { return std::sin(turned(s)); }),
+               z = integral(0, kLength, [&](double s) { return std::cos(turned(s)); });
+  EXPECT_LT((tip_of(scene, GetParam()) - Vec3(0, y, z)).norm(), 5 * accuracy() * kLength);
+}
+
+// Lengths of tendons are counted from the unloaded shape, whatever it is.
+TEST_P(VaryingRod, WithATendonPulledInByNothingIsUnloaded) {
+  Scene scene;
+  scene.rods.push_back(steel_rod(kLength, 1e-3));
+  for (double s : {0., 0.25, 0.7, 1.})
+    scene.rods[0].rest_samples.push_back({s, {3, 20 * s, -4}});
+  const Vec3 unloaded = tip_of(scene, GetParam());
+  add_tendon(scene, 0.01, 0.3, 0);
+  displace(scene, 0);
+  EXPECT_LT((tip_of(scene, GetParam()) - unloaded).norm(), 1e-10 * kLength);
+  displace(scene, 1e-3);
+  const Equilibrium pulled(finely(scene, GetParam()));
+  ASSERT_TRUE(pulled.report.converged());
+  EXPECT_GT(pulled.robot.rods[0].model->tendons()[0].tension, 0);
+  EXPECT_NEAR(pulled.robot.rods[0].model->tendons()[0].displacement, 1e-3, 1e-10);
 }
 
 TEST_P(VaryingRod, TwistAndLoadOnAVaryingRestShapeAgreeWithCvode) {

@@ -303,6 +303,7 @@ TEST(NewtonDirection, IsExactForTensionsThatAreUnknown) {
     set_all_effects(scene);
     expect_exact(scene, {}, "statics, all effects");
     expect_exact(scene, {Mode::kGeneralizedAlpha}, "dynamics, all effects");
+    expect_exact(scene, {Mode::kGeneralizedAlpha, 1. / 4000}, "dynamics, many segments");
   }
 }
 
