@@ -34,7 +34,7 @@ struct RotaryModel {
   bool body_rates;
 };
 
-inline V3 third_column(const double* R) {
+[[maybe_unused]] inline V3 third_column(const double* R) {
   return {R[2], R[5], R[8]};
 }
 
