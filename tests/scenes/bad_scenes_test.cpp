@@ -13,7 +13,7 @@ std::vector<fs::path> bad_scenes() {
   std::vector<fs::path> paths;
   for (const auto& entry :
        fs::directory_iterator(std::string(CPRSIM_SOURCE_DIR) + "/tests/scenes/bad"))
-    paths.push_back(entry.path());
+    if (entry.path().extension() == ".xml") paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   return paths;
 }
