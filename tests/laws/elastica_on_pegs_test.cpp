@@ -9,6 +9,7 @@
 #include "engine/run/simulation.h"
 #include "scenes/loader/load.h"
 #include "tests/laws/plane_elastica.h"
+#include "tests/support/box_mesh.h"
 
 namespace cprsim {
 namespace {
@@ -136,21 +137,6 @@ TEST(ElasticaOnPegs, OnARock) {
   const LoadResult loaded = contact_scene("cantilever_on_rock");
   ASSERT_TRUE(loaded.scene);
   compare(end_of(*loaded.scene), expected_of(rod, u), 6e-5);
-}
-
-/// The twelve triangles of a box, each side with corners of its own.
-MeshSpec box_mesh(const Vec3& size) {
-  MeshSpec mesh;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      const Vec3 n = side * Vec3::Unit(axis), u = Vec3::Unit((axis + 1) % 3), v = n.cross(u);
-      const auto first = static_cast<unsigned>(mesh.positions.size());
-      for (const Vec3& p : {Vec3(n - u - v), Vec3(n + u - v), Vec3(n + u + v), Vec3(n - u + v)})
-        mesh.positions.emplace_back((0.5 * size.cwiseProduct(p)).cast<float>());
-      mesh.triangles.push_back({first, first + 1, first + 2});
-      mesh.triangles.push_back({first, first + 2, first + 3});
-    }
-  return mesh;
 }
 
 // To the solver's tolerance: a heavy rod on a table, across the diagonals of its top, or on its

@@ -9,6 +9,7 @@
 
 #include "engine/math/legendre.h"
 #include "engine/math/so3.h"
+#include "tests/support/box_mesh.h"
 
 namespace cprsim {
 namespace {
@@ -71,17 +72,6 @@ TEST(MassProperties, SolidsOfRevolutionAreTheSumOfTheirDiscs) {
                   },
                   {-l / 2 - r, -l / 2, l / 2, l / 2 + r}),
               1e-12);
-}
-
-MeshSpec box_mesh(const Vec3& size, const Vec3& at) {
-  MeshSpec mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.positions.push_back(
-        (at + size.cwiseProduct(Vec3(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5)))
-            .cast<float>());
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
 }
 
 TEST(MassProperties, AMeshOfABoxIsTheBox) {

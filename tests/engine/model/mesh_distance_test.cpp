@@ -8,25 +8,11 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/box_mesh.h"
 #include "tests/support/finite_difference.h"
 
 namespace cprsim {
 namespace {
-
-/// A unit cube about the origin, scaled; each side with corners of its own, as files have them.
-MeshSpec box(const Vec3& size) {
-  MeshSpec mesh;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      const Vec3 n = side * Vec3::Unit(axis), u = Vec3::Unit((axis + 1) % 3), v = n.cross(u);
-      const auto first = static_cast<unsigned>(mesh.positions.size());
-      for (const Vec3& p : {Vec3(n - u - v), Vec3(n + u - v), Vec3(n + u + v), Vec3(n - u + v)})
-        mesh.positions.emplace_back((0.5 * size.cwiseProduct(p)).cast<float>());
-      mesh.triangles.push_back({first, first + 1, first + 2});
-      mesh.triangles.push_back({first, first + 2, first + 3});
-    }
-  return mesh;
-}
 
 /// A torus about z, hollow on its inner side; sizes that single precision has exactly.
 MeshSpec torus(double R, double r, unsigned around, unsigned across) {
@@ -76,7 +62,7 @@ double brute_force(const MeshSpec& mesh, const Vec3& x) {
 
 TEST(MeshDistance, OfABoxIsThatOfTheShape) {
   const Vec3 size(0.5, 0.75, 1.25);
-  const MeshDistance mesh(box(size));
+  const MeshDistance mesh(box_mesh(size));
   ShapeSpec shape;
   shape.kind = ShapeKind::kBox;
   shape.size = size;
@@ -162,10 +148,10 @@ TEST(MeshDistance, OfASheetHasTwoSides) {
 
 // Triangles that are wound the other way enclose the same solid.
 TEST(MeshDistance, KnowsASolidThatIsInsideOut) {
-  MeshSpec turned = box({0.5, 0.75, 1.25});
+  MeshSpec turned = box_mesh({0.5, 0.75, 1.25});
   for (auto& t : turned.triangles)
     std::swap(t[0], t[1]);
-  const MeshDistance mesh(box({0.5, 0.75, 1.25})), other(turned);
+  const MeshDistance mesh(box_mesh({0.5, 0.75, 1.25})), other(turned);
   Points points;
   for (int i = 0; i < 200; ++i) {
     const Vec3 x = points.next();
