@@ -167,6 +167,9 @@ void check_size(Reading& r) {
 
 struct Extremes {
   double least, most, t_least, t_most;
+
+  /// A profile that ends at a limit may be beyond it by this much.
+  double round_off() const { return 1e-12 * std::max(std::abs(least), std::abs(most)); }
 };
 
 /// Of the profile's value, or of its rate.
@@ -218,7 +221,7 @@ void check_driven_axis(Reading& r, const DriveSpec& drive) {
   const std::string name = axis_name(joint, drive.freedom);
   const double end = r.scene.simulation.duration;
   const auto check = [&](const Extremes& e, double lower, double upper, const char* what) {
-    const bool low = e.least<lower, high = e.most> upper;
+    const bool low = e.least<lower - e.round_off(), high = e.most> upper + e.round_off();
     if (low || high)
       r.report.at(Severity::kError, "E508", drive.place, 13,
                   "the drive takes " + std::string(what) + name + " to " +
@@ -268,7 +271,7 @@ void check_drives(Reading& r) {
                         format_number(e.least) + " m at t = " + format_number(e.t_least) + " s");
     } else if (drive.quantity == DriveQuantity::kTension) {
       const Extremes e = extremes_of(drive.profile, scene.simulation.duration, false);
-      if (e.least < 0)
+      if (e.least < -e.round_off())
         r.report.at(Severity::kError, "E508", drive.place, 13,
                     "a tendon only pulls: the tension of '" + scene.tendons[at(drive.tendon)].name +
                         "' becomes " + format_number(e.least) +

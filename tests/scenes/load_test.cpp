@@ -224,6 +224,18 @@ TEST(Loading, ReportsAllIndependentMistakesAtOnce) {
   EXPECT_EQ(error_codes(load_text(text)), expected);
 }
 
+// Where this spline is back at 0, round-off leaves -7e-15.
+TEST(Loading, LetsADriveEndAtItsLimit) {
+  const auto scene = scene_of(R"(
+    <joint name="slide" type="prismatic"><parent>base</parent><child>plate</child>
+      <axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>30</upper></limit></axis></joint>
+    <cprsim:drive joint="slide" quantity="position">
+      <keyframes interpolation="cubic">0 0, 0.2 5, 0.5 20, 0.8 20, 1 0</keyframes>
+    </cprsim:drive>)");
+  ASSERT_EQ(scene->drives.size(), 1u);
+  EXPECT_LT(scene->drives[0].profile.evaluate(1, true).value, 0);
+}
+
 TEST(Loading, ReadsEveryAxisOfAJoint) {
   const auto scene = scene_of(R"(
     <cprsim:joint name="table" type="planar"><parent>base</parent><child>plate</child>
