@@ -180,6 +180,8 @@ void PlanarRod::set_unknowns(const Unknowns& u) {
   // where segments were cut differently their starts are the nodes reached
   for (std::size_t g = 1; g < starts_.size(); ++g)
     set(starts_[g], from + 6 * (then == starts_.size() ? g : then + segment_first_[g]));
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    set(nodes_[k], from + 6 * (then + k));
 }
 
 void PlanarRod::predict(const std::vector<const Unknowns*>& past,

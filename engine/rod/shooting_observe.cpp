@@ -213,6 +213,8 @@ void ShootingRod::set_unknowns(const Unknowns& u) {
     std::copy_n(u.values.data() + 6 * j + 3, 3, stages_[j].v);
   }
   if (finds_tensions()) tendons_->set_values(u.values.tail(tendons_->unknowns()));
+  // contacts look for what is near from there, and prepare() may cut other segments
+  nodes_ = u.nodes;
   if (u.starts.size() == starts_.size()) {
     starts_ = u.starts;
     return;
@@ -228,6 +230,7 @@ void ShootingRod::predict(const std::vector<const Unknowns*>& past,
   assert(!past.empty() && past.size() == weights.size());
   Unknowns sum = *past.front();
   sum.contacts = past.back()->contacts;  // the set is what it last was, its forces a start
+  sum.nodes = past.back()->nodes;
   for (const Unknowns* u : past)
     if (u->starts.size() != starts_.size()) {
       set_unknowns(*past.back());

@@ -6,8 +6,8 @@
 // A rod is linearised once as with given tensions and once for each unknown one, its residual then
 // being increased by the derivative by that tension; all is affine, so that the difference is Y_x.
 // Of the 6 + m entries of z and x (1), m small, leaves six free, which are the z of the whole. x
-// alone would not do as its pivots: with some choices of z a tension turns the rod's moments instead
-// of bending it. Nothing of this runs in a rod whose tensions are given.
+// alone would not do as its pivots: with some choices of z a tension turns the rod's moments
+// instead of bending it. Nothing of this runs in a rod whose tensions are given.
 #pragma once
 
 #include "engine/rod/rod_model.h"

@@ -63,6 +63,7 @@ void Simulation::Parts::step_dynamic() {
   double target = h;
   if (plan.adaptive && (free_bodies || contacts.touching()))
     target = std::min(target, scene.max_step_size);
+  bool rescued = false;
   for (int failures = 0;; ++failures) {
     const double left = stop - t;
     // land on the break; in adaptive mode without leaving a sliver
@@ -101,6 +102,18 @@ void Simulation::Parts::step_dynamic() {
       if (target > 1e-12 * std::max(1.0, end)) continue;
     }
     report = outcome.report;
+    // what is asked for is that many retries below the step that a scene with a fixed one takes
+    if (plan.adaptive && step > scene.max_step_size) failures = -1;
+    if (failures >= retries && contacts.any() && !rescued) {
+      // backward Euler from a distance: points that chatter in short steps settle in a longer one
+      rescued = true;
+      marcher.cushion(true);
+      cushioned = kCushionedSteps;
+      target = scene.max_step_size;
+      failures = -1;
+      ++statistics.retried;
+      continue;
+    }
     if (failures >= retries || target <= 1e-12 * std::max(1.0, end)) {
       fail("step failed at t = " + short_number(t) + " s with a step of " + short_number(step) +
            " s");

@@ -90,7 +90,7 @@ class SplineOrder : public ::testing::TestWithParam<OrderCase> {};
 
 // p for even degrees, p + 1 for odd ones.
 TEST_P(SplineOrder, IsTheEvenNumberAtOrAboveTheDegree) {
-  const auto [degree, coarse] = GetParam();
+  const int degree = GetParam().degree, coarse = GetParam().coarse;
   const Elastica exact = solve_elastica(5);
   const auto error = [&](int elements) {
     Scene scene = cantilever();

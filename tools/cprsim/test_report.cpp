@@ -75,19 +75,19 @@ std::string closing_line(const std::vector<TestCase>& tests) {
 }
 
 std::string to_json(const std::vector<TestCase>& tests) {
-  using Json = nlohmann::ordered_json;
-  Json json = {{"schema", "cprsim-test/1"},
-               {"passed", count(tests, TestVerdict::kPassed)},
-               {"failed", count(tests, TestVerdict::kFailed)},
-               {"skipped", count(tests, TestVerdict::kSkipped)},
-               {"scenes", Json::array()}};
+  using OrderedJson = nlohmann::ordered_json;
+  OrderedJson json = {{"schema", "cprsim-test/1"},
+                      {"passed", count(tests, TestVerdict::kPassed)},
+                      {"failed", count(tests, TestVerdict::kFailed)},
+                      {"skipped", count(tests, TestVerdict::kSkipped)},
+                      {"scenes", OrderedJson::array()}};
   for (const TestCase& test : tests) {
-    Json scene = {
+    OrderedJson scene = {
         {"path", test.path}, {"verdict", to_string(test.verdict)}, {"seconds", test.seconds}};
     if (!test.message.empty()) scene["message"] = test.message;
-    scene["expectations"] = Json::array();
+    scene["expectations"] = OrderedJson::array();
     for (const ExpectResult& result : test.expectations) {
-      Json checks = Json::array();
+      OrderedJson checks = OrderedJson::array();
       for (const CheckResult& check : result.checks)
         checks.push_back({{"kind", check.kind},
                           {"verdict", to_string(check.verdict)},
@@ -100,7 +100,7 @@ std::string to_json(const std::vector<TestCase>& tests) {
     }
     json["scenes"].push_back(scene);
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string to_junit(const std::vector<TestCase>& tests) {
