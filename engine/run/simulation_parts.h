@@ -178,6 +178,7 @@ struct Simulation::Parts {
 
   void soften(bool touched);
   bool contacts_object(const Marcher::Outcome& outcome, double step, double& target);
+  bool throws(double t_new, const Marcher::Outcome& outcome) const;
   void step_dynamic();
   void step_quasistatic();
 

@@ -56,6 +56,17 @@ bool Simulation::Parts::contacts_object(const Marcher::Outcome& outcome, double 
   return true;
 }
 
+/// Whether a step would make more energy than has been about so far: a point that had
+/// sunk between two places where contact is held, and is put back in too short a time.
+bool Simulation::Parts::throws(double t_new, const Marcher::Outcome& outcome) const {
+  if (!contacts.touching() && cushioned == 0) return false;
+  EnergyLedger trial = ledger;
+  const EnergySample old = trial.sample();
+  trial.close_step(t_new, outcome.damping_loss, outcome.drive_work, cushioned > 0);
+  const double known = old.kinetic + old.elastic + old.dissipated + std::abs(old.work);
+  return known > 0 && trial.sample().balance - old.balance > known;
+}
+
 void Simulation::Parts::step_dynamic() {
   const int retries = scene.solver.halve_on_failure ? scene.solver.retries : 0;
   const double stop = next_break();
@@ -63,7 +74,16 @@ void Simulation::Parts::step_dynamic() {
   double target = h;
   if (plan.adaptive && (free_bodies || contacts.touching()))
     target = std::min(target, scene.max_step_size);
+  // Backward Euler from a distance, once: points that chatter in short steps settle in a longer
+  // one.
   bool rescued = false;
+  const auto rescue = [&](double& to) {
+    rescued = true;
+    marcher.cushion(true);
+    cushioned = kCushionedSteps;
+    to = scene.max_step_size;
+    ++statistics.retried;
+  };
   for (int failures = 0;; ++failures) {
     const double left = stop - t;
     // land on the break; in adaptive mode without leaving a sliver
@@ -76,6 +96,19 @@ void Simulation::Parts::step_dynamic() {
       failure = "a rod would pass through an obstacle at t = " + short_number(t) + " s";
       status = RunStatus::kFailed;
       return;
+    }
+    if (outcome.converged && throws(t + step, outcome)) {
+      marcher.reject();
+      report = outcome.report;
+      if (rescued) {
+        failure = "contact would throw a rod at t = " + short_number(t) +
+                  " s: it has sunk between the points that are held, its cells are too long";
+        status = RunStatus::kFailed;
+        return;
+      }
+      rescue(target);
+      failures = -1;
+      continue;
     }
     if (outcome.converged && (!plan.adaptive || outcome.error <= plan.tolerance)) {
       const bool landed = step == left;
@@ -105,13 +138,8 @@ void Simulation::Parts::step_dynamic() {
     // what is asked for is that many retries below the step that a scene with a fixed one takes
     if (plan.adaptive && step > scene.max_step_size) failures = -1;
     if (failures >= retries && contacts.any() && !rescued) {
-      // backward Euler from a distance: points that chatter in short steps settle in a longer one
-      rescued = true;
-      marcher.cushion(true);
-      cushioned = kCushionedSteps;
-      target = scene.max_step_size;
+      rescue(target);
       failures = -1;
-      ++statistics.retried;
       continue;
     }
     if (failures >= retries || target <= 1e-12 * std::max(1.0, end)) {

@@ -90,7 +90,7 @@ TEST_F(Restart, ReproducesAFailure) {
   EXPECT_EQ(again.code, 4);
   for (const Outcome* outcome : {&failed, &again}) {
     EXPECT_TRUE(has(outcome->err, "step failed at t = 0.3 s")) << outcome->err;
-    EXPECT_TRUE(has(outcome->err, "balance of m::bob, force z")) << outcome->err;
+    EXPECT_TRUE(has(outcome->err, "balance of m::bob, force x")) << outcome->err;
   }
   EXPECT_EQ(without_header(csv("again")), "") << "no step was taken before";
   const auto report = nlohmann::json::parse(contents(folder_ / "failed/run.json"));
