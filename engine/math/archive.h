@@ -26,6 +26,13 @@ class Archive {
 
   void operator()(T& number) { bytes(&number, sizeof number); }
 
+  /// A file may hold any byte for it.
+  void operator()(bool& flag) {
+    auto byte = static_cast<unsigned char>(flag ? 1 : 0);
+    bytes(&byte, 1);
+    flag = byte != 0;
+  }
+
   /// Matrices of fixed size.
   template <int Rows, int Columns>
 

@@ -108,7 +108,8 @@ TEST_F(Sweep, EveryCombinationOfPhysicalValuesHasItsOwnReference) {
   ASSERT_EQ(
       run("sweep " + held_ + "--vary wire::rod/length=0.2,0.4 --vary points=12 --repeat 1").code,
       0);
-  for (const Json& one : json("out/released_rod_sweep/sweep.json")["runs"])
+  const Json sweep = json("out/released_rod_sweep/sweep.json");
+  for (const Json& one : sweep["runs"])
     EXPECT_LT(one["errors"][0].get<double>(), 1e-8);
 }
 
