@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/solve/phase_clock.h"
+
 namespace cprsim {
 namespace {
 
@@ -158,6 +160,7 @@ void RodContacts::update_echoes() {
 }
 
 bool RodContacts::revise(int round) {
+  const PhaseTimer timer(any() ? robot_.clock : nullptr, Phase::kContact);
   bool again = false;
   std::vector<Change> changes;
   for (std::size_t r = 0; r < rods_.size(); ++r) {
@@ -192,6 +195,7 @@ bool RodContacts::touching() const {
 }
 
 void RodContacts::begin_step() {
+  const PhaseTimer timer(any() ? robot_.clock : nullptr, Phase::kContact);
   for (Rod& rod : rods_) {
     rod.before = rod.side->contacts();
     // while a rod is far away, the distances of an older scan will do

@@ -8,6 +8,7 @@
 
 #include "engine/math/so3.h"
 #include "engine/model/flight.h"
+#include "engine/solve/phase_clock.h"
 
 namespace cprsim {
 
@@ -311,6 +312,16 @@ void Equations::add_joint_wrenches() {
 
 ProblemResidual Equations::evaluate() {
   ProblemResidual r;
+  evaluate_rods(r);
+  if (robot_.rods_meet) find_pairs();
+  const PhaseTimer timer(robot_.clock, Phase::kSystem);
+  evaluate_bodies(r);
+  evaluate_joints(r);
+  return r;
+}
+
+void Equations::evaluate_rods(ProblemResidual& r) {
+  const PhaseTimer timer(robot_.clock, Phase::kSections);
   for (std::size_t i = 0; i < robot_.rods.size(); ++i) {
     const RobotRod& rod = robot_.rods[i];
     const RodResidual own = rod.model->evaluate(robot_.port(rod.base), robot_.port(rod.tip));
@@ -321,31 +332,33 @@ ProblemResidual Equations::evaluate() {
       worst_ = {Worst::Kind::kRod, static_cast<int>(i), own.worst_row};
     }
   }
+}
+
+void Equations::evaluate_bodies(ProblemResidual& r) {
   for (std::size_t b = 0; b < wrench_.size(); ++b)
     wrench_[b] = body_rows(b);
-  if (robot_.rods_meet) {
-    find_pairs();
-    evaluate_pairs(r);
-  }
+  if (robot_.rods_meet) evaluate_pairs(r);
   add_body_loads();
   add_rod_wrenches();
   add_joint_wrenches();
   for (std::size_t b = 0; b < wrench_.size(); ++b)
     if (stands_still(b)) wrench_[b].setZero();
-  if (!bodies_held_) {
-    // inertia turns position round-off into forces, see ShootingRod::prepare
-    constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-    const RobotScale& unit = robot_.scale;
-    for (std::size_t b = 0; b < wrench_.size(); ++b) {
-      const double stiffness = robot_.bodies[b].mass * rates_.c_v * rates_.c_w;
-      const double noise =
-          std::max(1.0, kRoundOff * stiffness * unit.length / (unit.force * tolerance_));
-      Vec6 scaled = wrench_[b];
-      scaled.head<3>() /= noise * unit.moment();
-      scaled.tail<3>() /= noise * unit.force;
-      note_rows(Mat3::Identity(), scaled, {Worst::Kind::kBody, static_cast<int>(b), 0}, r);
-    }
+  if (bodies_held_) return;
+  // inertia turns position round-off into forces, see ShootingRod::prepare
+  constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
+  const RobotScale& unit = robot_.scale;
+  for (std::size_t b = 0; b < wrench_.size(); ++b) {
+    const double stiffness = robot_.bodies[b].mass * rates_.c_v * rates_.c_w;
+    const double noise =
+        std::max(1.0, kRoundOff * stiffness * unit.length / (unit.force * tolerance_));
+    Vec6 scaled = wrench_[b];
+    scaled.head<3>() /= noise * unit.moment();
+    scaled.tail<3>() /= noise * unit.force;
+    note_rows(Mat3::Identity(), scaled, {Worst::Kind::kBody, static_cast<int>(b), 0}, r);
   }
+}
+
+void Equations::evaluate_joints(ProblemResidual& r) {
   for (std::size_t j = 0; j < robot_.joints.size() && !bodies_held_; ++j) {
     const Joint& joint = robot_.joints[j];
     const Joint::Rows rows =
@@ -359,7 +372,6 @@ ProblemResidual Equations::evaluate() {
         note(rows.effort[static_cast<Eigen::Index>(k)],
              {Worst::Kind::kJoint, static_cast<int>(j), 6 + static_cast<int>(k)}, r);
   }
-  return r;
 }
 
 void Equations::keep() {

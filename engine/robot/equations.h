@@ -160,6 +160,9 @@ class Equations final : public Problem {
 
   PointLoad scaled_load(const LoadSpec& load) const;
   Vec6 body_rows(std::size_t b);
+  void evaluate_rods(ProblemResidual& r);
+  void evaluate_bodies(ProblemResidual& r);
+  void evaluate_joints(ProblemResidual& r);
   void add_rod_wrenches();
   void add_joint_wrenches();
   void drive_joint(const JointDrive& drive);
@@ -194,6 +197,7 @@ class Equations final : public Problem {
   void assemble_joints();
   template <int N>
   void distribute_to_rods();
+  bool solve_system(double mu);
   bool solve(double mu);
   bool solve_least_motion(const VecX& columns);
   void distribute();

@@ -8,6 +8,7 @@
 #include "engine/math/linear_solve.h"
 #include "engine/math/so3.h"
 #include "engine/robot/equations.h"
+#include "engine/solve/phase_clock.h"
 
 namespace cprsim {
 namespace {
@@ -55,6 +56,7 @@ const OpenPorts* Equations::open_ports(std::size_t rod) const {
 }
 
 void Equations::find_pairs() {
+  const PhaseTimer timer(robot_.clock, Phase::kContact);
   pairs_.clear();
   for (std::size_t r = 0; r < robot_.rods.size(); ++r) {
     TouchingRod* side = robot_.rods[r].model->touching();

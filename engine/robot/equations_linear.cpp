@@ -8,6 +8,7 @@
 
 #include "engine/math/linear_solve.h"
 #include "engine/robot/equations.h"
+#include "engine/solve/phase_clock.h"
 
 namespace cprsim {
 namespace {
@@ -77,6 +78,7 @@ bool Equations::condense(bool keep_all) {
 }
 
 bool Equations::condense_rods(bool keep_all) {
+  const PhaseTimer timer(robot_.clock, Phase::kElimination);
   return robot_.plane ? condense<3>(keep_all) : condense<6>(keep_all);
 }
 
@@ -345,6 +347,7 @@ void Equations::distribute_to_rods() {
 }
 
 void Equations::distribute() {
+  const PhaseTimer timer(robot_.clock, Phase::kElimination);
   if (robot_.plane)
     distribute_to_rods<3>();
   else
@@ -353,11 +356,16 @@ void Equations::distribute() {
 
 bool Equations::find_direction(double mu) {
   if (!condense_rods(mu > 0)) return false;
-  assemble();
-  ++factorizations_;
-  if (!solve(mu)) return false;
+  if (!solve_system(mu)) return false;
   distribute();
   return true;
+}
+
+bool Equations::solve_system(double mu) {
+  const PhaseTimer timer(robot_.clock, Phase::kSystem);
+  assemble();
+  ++factorizations_;
+  return solve(mu);
 }
 
 bool Equations::follow_bodies(const std::vector<Vec6>& motions) {

@@ -70,6 +70,8 @@ struct RobotScale {
   double moment() const { return force * length; }
 };
 
+class PhaseClock;
+
 struct Robot {
   const Scene* scene = nullptr;
   std::vector<LinkPlace> links;  ///< as Scene::bodies
@@ -82,7 +84,8 @@ struct Robot {
   Vec3 gravity = Vec3::Zero();  ///< 0 unless the effect is on
   bool rods_meet = false;       ///< bodies that move, or each other
   RobotScale scale;
-  std::optional<Mat3> plane;  ///< of a planar scene: e1, e2 and the normal as columns, world
+  std::optional<Mat3> plane;    ///< of a planar scene: e1, e2 and the normal as columns, world
+  PhaseClock* clock = nullptr;  ///< measures where time goes, if somebody asked; not owned
 
   Pose pose_of(const Attachment& a) const;
 

@@ -38,6 +38,10 @@ const ProblemFacts& Simulation::facts() const {
   return parts_->facts;
 }
 
+void Simulation::measure(PhaseClock* clock) {
+  parts_->robot.clock = clock;
+}
+
 bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
   const auto begin = Clock::now();
   const bool equilibrium =

@@ -16,6 +16,7 @@
 
 namespace cprsim {
 
+class PhaseClock;
 struct Robot;
 struct RobotUnknowns;
 
@@ -77,6 +78,9 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   const ProblemFacts& facts() const;
+
+  /// From here on `clock` measures where the time goes; null: nothing does. It must outlive this.
+  void measure(PhaseClock* clock);
 
   /// Finds the initial state (static equilibrium if the scene asks for it or is static).
   const SolveReport& start();

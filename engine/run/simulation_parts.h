@@ -18,6 +18,7 @@
 #include "engine/run/observation.h"
 #include "engine/run/simulation.h"
 #include "engine/run/touching_solve.h"
+#include "engine/solve/phase_clock.h"
 
 namespace cprsim {
 
@@ -77,6 +78,7 @@ struct Simulation::Parts {
   }
 
   void observe(double step, double wall) {
+    const PhaseTimer timer(robot.clock, Phase::kObservation);
     before = std::move(now);
     now = take_snapshot(robot, free_bodies.get(), t);
     if (contacts.any()) add_rod_contacts(now.contact);

@@ -21,7 +21,10 @@ void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outco
   t = t_new;
   report = outcome.report;
   count(report);
-  if (free_bodies) free_bodies->advance(h_used, link_motions(robot, free_bodies.get()));
+  if (free_bodies) {
+    const PhaseTimer timer(robot.clock, Phase::kFreeBodies);
+    free_bodies->advance(h_used, link_motions(robot, free_bodies.get()));
+  }
   ledger.close_step(t, outcome.damping_loss, outcome.drive_work, cushioned > 0);
   ++statistics.steps;
   statistics.largest_step = std::max(statistics.largest_step, h_used);

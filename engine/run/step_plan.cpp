@@ -12,12 +12,28 @@ bool embedded(SchemeKind kind) {
          kind == SchemeKind::kEsdirk43;
 }
 
+double longest_rod(const Scene& scene) {
+  double length = 0;
+  for (const RodSpec& rod : scene.rods)
+    length = std::max(length, rod.length);
+  return length > 0 ? length : 1;
+}
+
+/// Where a scene does not say: below this error, over the rod's length, the fourth order is the
+/// cheaper one (docs/accuracy.md).
+SchemeKind scheme_for(const Scene& scene) {
+  constexpr double kFine = 3e-5;
+  const auto& accuracy = scene.solver.accuracy;
+  return accuracy && *accuracy < kFine * longest_rod(scene) ? SchemeKind::kEsdirk43
+                                                            : SchemeKind::kEsdirk32;
+}
+
 }  // namespace
 
 StepPlan plan_steps(const Scene& scene) {
   StepPlan plan;
   const SolverSpec& spec = scene.solver;
-  plan.scheme.kind = spec.scheme.value_or(SchemeKind::kEsdirk32);
+  plan.scheme.kind = spec.scheme.value_or(scheme_for(scene));
   plan.scheme.alpha = spec.alpha.value_or(-0.4);
   plan.scheme.rho_inf = spec.rho_inf.value_or(0.8);
   plan.adaptive = embedded(plan.scheme.kind) && !spec.step;
@@ -25,11 +41,8 @@ StepPlan plan_steps(const Scene& scene) {
   if (!plan.adaptive) return plan;
   plan.tolerance = spec.tolerance.value_or(1e-5);
   if (spec.accuracy && !spec.tolerance) {
-    double length = 0;
-    for (const RodSpec& rod : scene.rods)
-      length = std::max(length, rod.length);
     // local errors add up: a tenth of what is asked for
-    plan.tolerance = 0.1 * *spec.accuracy / (length > 0 ? length : 1);
+    plan.tolerance = 0.1 * *spec.accuracy / longest_rod(scene);
   }
   return plan;
 }

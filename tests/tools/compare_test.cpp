@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // cprsim compare: files in; a table, a verdict and a picture out.
+#include <numbers>
+
 #include "tests/tools/program.h"
 
 namespace cprsim {
@@ -54,6 +56,31 @@ TEST_F(Compare, ARunComparedWithItselfIsExact) {
   EXPECT_EQ(report["quantities"].size(), 1U);
   EXPECT_EQ(report["quantities"][0]["samples"], 51);
   EXPECT_NEAR(report["length"], 0.4, 1e-12);
+}
+
+TEST_F(Compare, TellsFrequencyAmplitudeAndDampingOfWhatVibrates) {
+  const auto record = [](double frequency, double amplitude, double zeta) {
+    std::string text = "time [s],a.position.x [m],a.position.y [m],a.position.z [m]\n";
+    for (int k = 0; k <= 2000; ++k) {
+      const double t = 0.001 * k, omega = 2 * std::numbers::pi * frequency;
+      text += std::to_string(t) + ",0," +
+              std::to_string(amplitude * std::exp(-zeta * omega * t) * std::cos(omega * t)) +
+              ",1\n";
+    }
+    return text;
+  };
+  spill(folder_ / "here.csv", record(10.1, 1.1, 0.02));
+  spill(folder_ / "there.csv", record(10, 1, 0.01));
+  const Answer answer = run("compare here.csv there.csv --json");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  const auto vibrations = nlohmann::json::parse(answer.out)["vibrations"];
+  ASSERT_EQ(vibrations.size(), 1U);
+  EXPECT_EQ(vibrations[0]["name"], "a.position.y");
+  EXPECT_NEAR(vibrations[0]["run"]["frequency"], 10.1, 0.01);
+  EXPECT_NEAR(vibrations[0]["reference"]["frequency"], 10, 0.01);
+  EXPECT_NEAR(vibrations[0]["run"]["damping_ratio"], 0.02, 5e-4);
+  EXPECT_NEAR(vibrations[0]["reference"]["damping_ratio"], 0.01, 5e-4);
+  EXPECT_TRUE(run("compare here.csv there.csv").says("10.1 Hz, reference 10"));
 }
 
 TEST_F(Compare, TakesTumUnderAnotherNameInAnotherFrame) {

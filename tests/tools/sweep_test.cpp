@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // cprsim sweep and cprsim effects: settings in; errors, orders, costs and pictures out.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/tools/program.h"
@@ -189,6 +190,13 @@ TEST_F(Sweep, PlotDrawsRecordingsAndScenes) {
   EXPECT_EQ(shapes.substr(0, shapes.find('\n')), "rod,time [s],x [m],y [m],z [m]");
   EXPECT_NE(shapes.find("wire::rod,0.0125,"), std::string::npos);
   EXPECT_FALSE(exists("s/source_1.csv"));
+  EXPECT_EQ(run("plot " + released_ + "--heat curvature -o heat").code, 0);
+  const std::string heat = contents(folder_ / "heat/heat.csv");
+  EXPECT_EQ(heat.substr(0, heat.find('\n')), "#rod,time [s],s [1],curvature [1/m]");
+  EXPECT_EQ(std::count(heat.begin(), heat.end(), '\n'), 1 + 201 * 41 + 2);
+  EXPECT_TRUE(exists("heat/plot.svg"));
+  EXPECT_EQ(run("plot r --heat curvature").code, 2);
+  EXPECT_EQ(run("plot " + released_ + "--heat warmth").code, 2);
   EXPECT_EQ(run("plot r -c nothing").code, 2);
   EXPECT_EQ(run("plot r --shapes 3").code, 2);
   EXPECT_EQ(run("plot r --format gif").code, 2);

@@ -62,8 +62,8 @@ std::string fixed_by(const Scene& scene) {
   return text;
 }
 
-/// Equations are solved so far that what is left does not count: residuals are relative to the
-/// robot's size and stiffness.
+}  // namespace
+
 double residual_for(const Scene& scene) {
   constexpr double kShareOfError = 1e-2, kDefault = 1e-9, kLeast = 1e-13;
   double length = 0;
@@ -73,7 +73,9 @@ double residual_for(const Scene& scene) {
                     kDefault);
 }
 
-}  // namespace
+double estimated_error(const PositionTrack& looser, const PositionTrack& track) {
+  return farthest(looser, track) / kShare;
+}
 
 PositionTrack::PositionTrack(const Scene& scene)
     : end_(scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration) {}
@@ -136,7 +138,7 @@ void AccuracyControl::fly_pilot(const std::function<bool()>& stop) {
 bool AccuracyControl::refine(long evaluations) {
   constexpr double kAim = 0.3;  // of what is asked for
   ++report_.runs;
-  report_.estimate = farthest(*pilot_, *track_) / kShare;
+  report_.estimate = estimated_error(*pilot_, *track_);
   const bool at_the_end = *scene_.solver.accuracy <= kLeastAccuracy;
   const bool settled =
       report_.reached() || at_the_end || report_.runs >= kMostRuns || !report_.held_back.empty();

@@ -40,6 +40,13 @@ class PositionTrack : public Sink {
   std::vector<std::vector<Vec3>> positions_;  ///< by instant
 };
 
+/// (1) from two runs of which the first is made for errors of at least ten times the size, m.
+double estimated_error(const PositionTrack& looser, const PositionTrack& track);
+
+/// Residual to which equations are solved so that what is left does not count beside the accuracy
+/// that a scene asks for: residuals are relative to the robot's size and stiffness.
+double residual_for(const Scene& scene);
+
 /// What came of an accuracy that was asked for.
 struct AccuracyReport {
   double asked = 0;       ///< m

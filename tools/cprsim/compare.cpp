@@ -180,6 +180,7 @@ CompareReport compare(const CompareOptions& options) {
     const QuantityComparison& c = report.quantities.back();
     if (c.time.empty())
       throw UsageError("'" + pair.quantity.name + "': run and reference have no instant in common");
+    if (auto vibration = compare_vibration(c)) report.vibrations.push_back(std::move(*vibration));
     report.from = any ? std::min(report.from, c.time.front()) : c.time.front();
     report.to = any ? std::max(report.to, c.time.back()) : c.time.back();
     any = true;

@@ -66,6 +66,23 @@ std::string lag_text(const CompareReport& report) {
       std::abs(ms), ms > 0 ? "late" : "early", gain);
 }
 
+std::string vibration_text(const VibrationComparison& v) {
+  std::string text = fmt::format(
+      "vibration  {}: {:.4g} Hz, reference {:.4g} Hz ({:+.2g} %); amplitude {:.3g} of its", v.name,
+      v.run.frequency, v.reference.frequency, 100 * (v.run.frequency / v.reference.frequency - 1),
+      v.run.amplitude / v.reference.amplitude);
+  if (v.run.damping_ratio && v.reference.damping_ratio)
+    text += fmt::format("; damping ratio {:.3g}, reference {:.3g}", *v.run.damping_ratio,
+                        *v.reference.damping_ratio);
+  return text + "\n";
+}
+
+Json vibration_json(const Vibration& v) {
+  Json json = {{"frequency", v.frequency}, {"amplitude", v.amplitude}};
+  if (v.damping_ratio) json["damping_ratio"] = *v.damping_ratio;
+  return json;
+}
+
 Json numbers_json(const CompareReport& report, const QuantityComparison& c) {
   const ErrorNumbers& n = c.numbers;
   const double f = shown_factor(c), length = length_of(report, c);
@@ -93,6 +110,31 @@ Json numbers_json(const CompareReport& report, const QuantityComparison& c) {
 
 }  // namespace
 
+std::optional<VibrationComparison> compare_vibration(const QuantityComparison& c) {
+  if (c.quantity.kind == QuantityKind::kAttitude || c.time.empty()) return std::nullopt;
+  const auto along = [](const std::vector<QuantityValue>& values, std::size_t axis) {
+    std::vector<double> all;
+    for (const QuantityValue& value : values)
+      all.push_back(value[static_cast<Eigen::Index>(axis)]);
+    return all;
+  };
+  std::size_t axis = 0;
+  double widest = -1;
+  for (std::size_t i = 0; i < c.quantity.width(); ++i) {
+    const std::vector<double> all = along(c.expected, i);
+    const auto [least, most] = std::minmax_element(all.begin(), all.end());
+    if (*most - *least <= widest) continue;
+    widest = *most - *least;
+    axis = i;
+  }
+  const auto run = find_vibration(c.time, along(c.value, axis)),
+             reference = find_vibration(c.time, along(c.expected, axis));
+  if (!run || !reference) return std::nullopt;
+  static constexpr const char* kComponents[] = {".x", ".y", ".z"};
+  return VibrationComparison{c.quantity.name + (c.quantity.width() == 3 ? kComponents[axis] : ""),
+                             *run, *reference};
+}
+
 bool CompareReport::kept() const {
   return std::all_of(limits.begin(), limits.end(), [](const CheckedLimit& l) { return l.kept(); });
 }
@@ -116,6 +158,7 @@ std::string to_json(const CompareReport& report) {
                {"instants", report.instants},
                {"ignored", report.ignored},
                {"quantities", Json::array()},
+               {"vibrations", Json::array()},
                {"limits", Json::array()},
                {"kept", report.kept()},
                {"files", Json::array()}};
@@ -134,6 +177,10 @@ std::string to_json(const CompareReport& report) {
   }
   for (const QuantityComparison& c : report.quantities)
     json["quantities"].push_back(numbers_json(report, c));
+  for (const VibrationComparison& v : report.vibrations)
+    json["vibrations"].push_back({{"name", v.name},
+                                  {"run", vibration_json(v.run)},
+                                  {"reference", vibration_json(v.reference)}});
   for (const CheckedLimit& l : report.limits)
     json["limits"].push_back({{"quantity", l.quantity},
                               {"kind", l.kind},
@@ -155,6 +202,8 @@ std::string to_summary(const CompareReport& report, const std::string& folder) {
     text +=
         fmt::format("           {} of them left out: the run or a number is not there\n", left_out);
   text += table_of(report) + lag_text(report);
+  for (const VibrationComparison& v : report.vibrations)
+    text += vibration_text(v);
   if (report.aligned) {
     const Vec3 &p = report.aligned->p, angles = rpy_of(report.aligned->R);
     text += fmt::format(

@@ -9,6 +9,7 @@
 
 #include "tools/cprsim/console.h"
 #include "tools/series/comparison.h"
+#include "tools/series/vibration.h"
 
 namespace cprsim {
 
@@ -21,6 +22,15 @@ struct CheckedLimit {
   bool kept() const { return value <= limit; }
 };
 
+/// How a quantity vibrates, along the axis on which the reference moves most.
+struct VibrationComparison {
+  std::string name;  ///< with the component
+  Vibration run, reference;
+};
+
+/// Nothing where one side does not vibrate, and for attitudes.
+std::optional<VibrationComparison> compare_vibration(const QuantityComparison& comparison);
+
 struct CompareReport {
   std::string label, run_path, reference_path;
   double from = 0, to = 0;   ///< s, instants of the reference that were compared
@@ -30,6 +40,7 @@ struct CompareReport {
   std::optional<Pose> aligned;  ///< --align: pose of the reference's frame
   std::optional<double> length;
   std::vector<QuantityComparison> quantities;
+  std::vector<VibrationComparison> vibrations;
   std::vector<std::string> ignored;  ///< columns of the reference that the run does not have
   std::vector<CheckedLimit> limits;
 

@@ -112,20 +112,26 @@ fs::path Outputs::claim(const std::string& name) {
   return folder_ / path;
 }
 
+template <typename Act>
+void Outputs::each(const Act& act) {
+  for (const auto& sink : sinks_) {
+    const PhaseTimer timer(clock_, sink->draws() ? Phase::kPictures : Phase::kRecording);
+    act(*sink);
+  }
+}
+
 void Outputs::begin(const Snapshot& start) {
   const Stopwatch watch;
   expectations_.begin(start);
   extremes_.begin(start);
-  for (const auto& sink : sinks_)
-    sink->begin(start);
+  each([&](Sink& sink) { sink.begin(start); });
   seconds_ += watch.seconds();
 }
 
 void Outputs::resume(const Snapshot& now) {
   expectations_.resume(now);
   extremes_.resume(now);
-  for (const auto& sink : sinks_)
-    sink->resume(now);
+  each([&](Sink& sink) { sink.resume(now); });
 }
 
 void Outputs::visit(Archive& archive) {
@@ -137,10 +143,12 @@ void Outputs::visit(Archive& archive) {
 
 void Outputs::step(const Snapshot& before, const Snapshot& now) {
   const Stopwatch watch;
-  expectations_.step(before, now);
-  extremes_.step(before, now);
-  for (const auto& sink : sinks_)
-    sink->step(before, now);
+  {
+    const PhaseTimer timer(clock_, Phase::kRecording);
+    expectations_.step(before, now);
+    extremes_.step(before, now);
+  }
+  each([&](Sink& sink) { sink.step(before, now); });
   seconds_ += watch.seconds();
 }
 
@@ -150,6 +158,7 @@ std::string Outputs::finish() {
   std::vector<std::unique_ptr<Sink>> finished;
   for (auto& sink : sinks_) {
     try {
+      const PhaseTimer timer(clock_, sink->draws() ? Phase::kPictures : Phase::kRecording);
       sink->finish();
       finished.push_back(std::move(sink));
     } catch (const std::runtime_error& error) {

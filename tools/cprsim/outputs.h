@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/model/scene.h"
+#include "engine/solve/phase_clock.h"
 #include "tools/cprsim/console.h"
 #include "tools/cprsim/expectations.h"
 #include "tools/cprsim/extremes.h"
@@ -34,6 +35,9 @@ class Outputs {
   /// Completes every file that can be completed. @return the first complaint, or an empty string
   std::string finish();
 
+  /// From here on the clock, unless it is null, measures where the time goes.
+  void measure(PhaseClock* clock) { clock_ = clock; }
+
   std::vector<WrittenFile> files() const;
 
   const Expectations& expectations() const { return expectations_; }
@@ -54,6 +58,9 @@ class Outputs {
   /// A file that the scene names: it may not leave the folder, nor be named twice.
   std::filesystem::path claim(const std::string& name);
 
+  template <typename Act>
+  void each(const Act& act);
+
   std::filesystem::path folder_;
   std::vector<std::string> claimed_;
   std::vector<VideoSpec> videos_;  ///< films refer to these
@@ -62,6 +69,7 @@ class Outputs {
   Extremes extremes_;
   std::string drawn_by_;
   double seconds_ = 0;
+  PhaseClock* clock_ = nullptr;
 };
 
 }  // namespace cprsim

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "tools/cprsim/commands.h"
@@ -12,6 +13,7 @@
 #include "tools/cprsim/gnuplot.h"
 #include "tools/cprsim/interrupt.h"
 #include "tools/cprsim/output_folder.h"
+#include "tools/cprsim/plot_heat.h"
 #include "tools/cprsim/plot_panels.h"
 #include "tools/cprsim/quiet_run.h"
 #include "tools/cprsim/study_command.h"
@@ -26,14 +28,46 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kSamples = 1000;
+constexpr int kHeatInstants = 201;
 
 struct PlotOptions {
   ConsoleOptions console;
   SceneOptions scene;
   std::vector<std::string> sources, channels, paths, formats;
   std::string output, plane;
+  std::string heat;  ///< a quantity of sections; empty: none
   bool energy = false, solver = false;
   int shapes = 0;
+
+  bool whole_rods() const { return shapes > 0 || !heat.empty(); }
+};
+
+/// What a recording does not hold: rods from base to tip.
+struct WholeRods {
+  std::vector<RodShape> shapes;
+  std::vector<HeatMap> heat;
+};
+
+/// Looks at evenly spaced instants of a run from its start to its end.
+class Glances {
+ public:
+  using Look = std::function<void(const Snapshot& snapshot, double time)>;
+
+  Glances(double end, int count, Look look) : end_(end), count_(count), look_(std::move(look)) {}
+
+  void step(const Snapshot& before, const Snapshot& now) {
+    for (; next_ < count_ && now.time >= due() * (1 - 1e-9); ++next_) {
+      const double t = due();
+      look_(t > before.time && t < now.time ? interpolate(before, now, t) : now, t);
+    }
+  }
+
+ private:
+  double due() const { return count_ > 1 ? end_ * next_ / (count_ - 1) : 0; }
+
+  double end_;
+  int count_, next_ = 0;
+  Look look_;
 };
 
 bool is_scene(const std::string& path) {
@@ -65,7 +99,7 @@ std::vector<Channel> channels_for(const Scene& scene, const PlotOptions& options
                                    fmt::join(nearest_channels(scene, name), ", ")));
     channels.insert(channels.end(), found.begin(), found.end());
   }
-  if (channels.empty() && options.shapes == 0)
+  if (channels.empty() && !options.whole_rods())
     throw UsageError("the scene records nothing: name channels with -c");
   return channels;
 }
@@ -85,31 +119,31 @@ void add_shapes(const Scene& scene, const Snapshot& snapshot, double time,
 
 /// Simulates the scene for its picture.
 PlotSource simulate(const Scene& scene, const std::string& label, const PlotOptions& options,
-                    std::vector<RodShape>& shapes) {
+                    WholeRods& rods) {
   const double end = scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration;
   std::vector<double> instants{0};
   for (int k = 1; k <= kSamples && end > 0; ++k)
     instants.push_back(end * k / kSamples);
   SeriesRecorder recorder(scene, channels_for(scene, options), instants);
-  int drawn = 0;
-  const auto due = [&](double time) {
-    return drawn < options.shapes &&
-           time >= (options.shapes > 1 ? end * drawn / (options.shapes - 1) : 0) * (1 - 1e-9);
-  };
-  const auto draw = [&](const Snapshot& before, const Snapshot& now) {
-    for (; due(now.time); ++drawn) {
-      const double t = options.shapes > 1 ? end * drawn / (options.shapes - 1) : 0;
-      add_shapes(scene, t > before.time && t < now.time ? interpolate(before, now, t) : now, t,
-                 shapes);
-    }
-  };
+  Glances shapes(end, options.shapes, [&](const Snapshot& snapshot, double time) {
+    add_shapes(scene, snapshot, time, rods.shapes);
+  });
+  std::vector<std::string> names;
+  for (const RodSpec& rod : scene.rods)
+    names.push_back(rod.name);
+  Glances heat(end, options.heat.empty() ? 0 : kHeatInstants,
+               [&](const Snapshot& snapshot, double time) {
+                 add_heat(names, snapshot, time, *find_section_quantity(options.heat), rods.heat);
+               });
   const Onlooker onlooker{[&](const Snapshot& start) {
                             recorder.begin(start);
-                            draw(start, start);
+                            shapes.step(start, start);
+                            heat.step(start, start);
                           },
                           [&](const Snapshot& before, const Snapshot& now) {
                             recorder.step(before, now);
-                            draw(before, now);
+                            shapes.step(before, now);
+                            heat.step(before, now);
                           }};
   const QuietRun run = run_quietly(scene, onlooker, [] { return stop_signal() != 0; });
   if (run.status == RunStatus::kFailed)
@@ -127,9 +161,10 @@ PlotSource read(const std::string& path) {
   return {folder.empty() ? run.label : folder, run.recordings[0]};
 }
 
-std::string script_for(const std::vector<PlotSource>& sources, const std::vector<RodShape>& shapes,
+std::string script_for(const std::vector<PlotSource>& sources, const WholeRods& rods,
                        const PlotOptions& options) {
-  if (options.shapes > 0) return shape_script(shapes, options.plane);
+  if (options.shapes > 0) return shape_script(rods.shapes, options.plane);
+  if (!options.heat.empty()) return heat_script(rods.heat, *find_section_quantity(options.heat));
   if (!options.paths.empty()) return path_script(sources, options.paths, options.plane);
   const auto panels = time_panels(sources, wanted(options));
   if (!panels.empty()) return time_script(sources, panels);
@@ -143,15 +178,19 @@ std::string script_for(const std::vector<PlotSource>& sources, const std::vector
                   fmt::join(names, ", ")));
 }
 
-int draw(const std::vector<PlotSource>& sources, const std::vector<RodShape>& shapes,
-         const PlotOptions& options, const Console& console) {
-  const std::string script = script_for(sources, shapes, options);
+int draw(const std::vector<PlotSource>& sources, const WholeRods& rods, const PlotOptions& options,
+         const Console& console) {
+  const std::string script = script_for(sources, rods, options);
   const OutputFolder folder(choose_output_folder(options.output, sources[0].label + "_plot"),
                             {"plot.json", "cprsim-plot/"});
   std::vector<std::string> files{"plot.gp"};
   if (options.shapes > 0) {
-    write_file(folder.path() / "shapes.csv", table_of(shapes));
+    write_file(folder.path() / "shapes.csv", table_of(rods.shapes));
     files.emplace_back("shapes.csv");
+  } else if (!options.heat.empty()) {
+    write_file(folder.path() / "heat.csv",
+               table_of(rods.heat, *find_section_quantity(options.heat)));
+    files.emplace_back("heat.csv");
   } else {
     for (std::size_t s = 0; s < sources.size(); ++s) {
       files.push_back(fmt::format("source_{}.csv", s + 1));
@@ -176,26 +215,34 @@ int draw(const std::vector<PlotSource>& sources, const std::vector<RodShape>& sh
 
 int plot(const PlotOptions& options, const Console& console) {
   std::vector<PlotSource> sources;
-  std::vector<RodShape> shapes;
+  WholeRods rods;
   for (const std::string& path : options.sources) {
     if (!is_scene(path)) {
-      if (options.shapes > 0)
-        throw UsageError("--shapes needs a scene: recordings hold channels, not whole rods");
+      if (options.whole_rods())
+        throw UsageError(std::string(options.shapes > 0 ? "--shapes" : "--heat") +
+                         " needs a scene: recordings hold channels, not whole rods");
       sources.push_back(read(path));
       continue;
     }
     const LoadedScene loaded = load_and_show(path, options.scene, console);
     if (loaded.scene == nullptr) return kExitSceneInvalid;
-    sources.push_back(simulate(*loaded.scene, label_of(path, *loaded.scene), options, shapes));
+    if (!options.heat.empty() && (loaded.scene->rods.empty() || options.sources.size() > 1 ||
+                                  loaded.scene->simulation.mode == Mode::kStatic))
+      throw UsageError("--heat needs one scene, with rods and a duration");
+    sources.push_back(simulate(*loaded.scene, label_of(path, *loaded.scene), options, rods));
     if (stop_signal() != 0) return 128 + stop_signal();
   }
-  return draw(sources, shapes, options, console);
+  return draw(sources, rods, options, console);
 }
 
 void check_words(const PlotOptions& options) {
-  const int kinds = (options.shapes > 0 ? 1 : 0) + (options.paths.empty() ? 0 : 1) +
+  const int kinds = (options.shapes > 0 ? 1 : 0) + (options.heat.empty() ? 0 : 1) +
+                    (options.paths.empty() ? 0 : 1) +
                     (!options.channels.empty() || options.energy || options.solver ? 1 : 0);
-  if (kinds > 1) throw UsageError("--shapes, --path and curves over time are different pictures");
+  if (kinds > 1)
+    throw UsageError("--shapes, --heat, --path and curves over time are different pictures");
+  if (!options.heat.empty() && find_section_quantity(options.heat) == nullptr)
+    throw UsageError("--heat: '" + options.heat + "' is none of " + section_quantities());
   for (const std::string& format : options.formats)
     if (format != "svg" && format != "png" && format != "pdf")
       throw UsageError("--format: '" + format + "' is none of svg, png, pdf");
@@ -216,7 +263,8 @@ int plot_command(const Words& words) {
       "  cprsim plot a b reference.csv -c robot::platform.position --format svg,pdf\n"
       "  cprsim plot out/planar --path robot::platform.position\n"
       "  cprsim plot scene.xml --energy\n"
-      "  cprsim plot scene.xml --shapes 12");
+      "  cprsim plot scene.xml --shapes 12\n"
+      "  cprsim plot scene.xml --heat curvature");
   line.arguments("SOURCE", options.sources, "Folders of runs, CSV, HDF5 or TUM files, scenes",
                  true);
   line.list("-c,--channel", options.channels, "CHANNEL",
@@ -225,6 +273,8 @@ int plot_command(const Words& words) {
   line.flag("--energy", options.energy, "All energies, and their balance");
   line.flag("--solver", options.solver, "Steps, iterations and residuals of the solver");
   line.count("--shapes", options.shapes, 1, "All rods at so many instants; needs a scene");
+  line.text("--heat", options.heat, "QUANTITY",
+            "Along rods and over time: " + section_quantities() + "; needs a scene");
   line.text("--plane", options.plane, "PLANE", "xy, xz or yz (default: the widest)");
   line.list("--format", options.formats, "WHICH", "svg (default), png, pdf");
   line.text("-o,--output", options.output, "DIR", "Folder (default out/<source>_plot)");

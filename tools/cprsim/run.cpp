@@ -21,6 +21,7 @@
 #include "tools/cprsim/outputs.h"
 #include "tools/cprsim/progress.h"
 #include "tools/cprsim/run_options.h"
+#include "tools/cprsim/run_profile.h"
 #include "tools/cprsim/run_report.h"
 #include "tools/cprsim/state_files.h"
 #include "tools/cprsim/stopwatch.h"
@@ -37,7 +38,8 @@ struct Run {
   std::filesystem::path folder;
   Stopwatch watch;
   RunReport report;
-  PositionTrack* track = nullptr;  ///< if an accuracy is asked for
+  PositionTrack* track = nullptr;                 ///< if an accuracy is asked for
+  std::unique_ptr<RunProfile> profile = nullptr;  ///< if asked for
 
   void write_report() const { write_file(folder / "run.json", to_json(scene, report)); }
 };
@@ -64,7 +66,9 @@ void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& st
     if (run.track != nullptr) run.track->begin(simulation.now());
   }
   while (simulation.status() == RunStatus::kRunning && !must_stop(run)) {
+    if (run.profile) run.profile->begin_step();
     simulation.advance();
+    if (run.profile) run.profile->end_step(simulation);
     if (simulation.status() == RunStatus::kFailed) break;
     outputs.step(simulation.before(), simulation.now());
     if (run.track != nullptr) run.track->step(simulation.before(), simulation.now());
@@ -161,6 +165,7 @@ void show(const Run& run) {
   if (run.console.json()) write_to_stdout(to_json(run.scene, report));
   if (report.end == RunEnd::kDone) {
     run.console.say(to_summary(run.scene, report, run.folder.string()));
+    run.console.say(profile_table(report));
     if (report.unstable_directions > 0)
       run.console.warn(fmt::format(
           "the equilibrium is unstable in {} direction{}: the robot would not stay there; `cprsim "
@@ -172,6 +177,26 @@ void show(const Run& run) {
   run.console.error(explain_failure(report, run.folder.string()));
 }
 
+void finish_profile(Run& run, Simulation& simulation) {
+  simulation.measure(nullptr);
+  run.profile->finish();
+  if (run.options.profile) run.report.phases = run.profile->clock().sums();
+  if (run.profile->left_out() > 0)
+    run.console.warn(
+        fmt::format("{} holds the first million stretches of time; {} more are left out",
+                    run.options.trace, run.profile->left_out()));
+}
+
+void warn_of_imbalance(const Run& run) {
+  constexpr double kOpen = 0.1;  // of the energy that moved
+  const double balance = run.report.extremes.relative_balance().value_or(0);
+  if (run.scene.simulation.mode == Mode::kDynamic && balance > kOpen)
+    run.console.warn(
+        fmt::format("{:.0f} % of the energy that moved is not accounted for: steps or rods are too "
+                    "coarse for this motion, or the scheme damps it",
+                    100 * balance));
+}
+
 void run_scene(Run& run, Simulation& simulation) {
   StateFiles states(run.scene, run.options, run.folder, simulation);
   const OutputFolder folder(run.folder);
@@ -180,16 +205,42 @@ void run_scene(Run& run, Simulation& simulation) {
   run.write_report();  // says "running", and marks the folder as ours if this process is killed
   try {
     Outputs outputs(run.scene, run.options, run.folder, run.console);
+    if (run.options.profile || !run.options.trace.empty()) {
+      run.profile = std::make_unique<RunProfile>(run.options.trace);
+      simulation.measure(&run.profile->clock());
+      outputs.measure(&run.profile->clock());
+    }
     run.report.film_device = outputs.drawn_by();
     run.report.files = outputs.files();
     run.write_report();
     simulate_or_complain(run, simulation, outputs, states);
+    if (run.profile) finish_profile(run, simulation);
     conclude(run, simulation, outputs, states);
   } catch (const std::runtime_error& error) {
     run.report.end = RunEnd::kOutput;
     run.report.failure = error.what();
     run.report.exit_code = kExitEnvironment;
   }
+}
+
+/// Runs once with the settings that a time budget buys.
+int run_in_real_time(Run& run) {
+  if (!run.options.from.empty())
+    throw StateError("a run that is held to a --real-time-factor cannot go on from a state");
+  if (run.scene.simulation.mode == Mode::kStatic || run.scene.rods.empty())
+    throw std::invalid_argument(
+        "--real-time-factor is for scenes with rods and a duration: there is nothing to keep up "
+        "with here");
+  RealTimeSearch search(run.scene, *run.options.real_time_factor);
+  search.run([&] { return must_stop(run); });
+  run.report.real_time = search.report();
+  const auto simulation = build_simulation(search.scene());
+  run_scene(run, *simulation);
+  run.write_report();
+  show(run);
+  if (!run.report.real_time->kept_up()) run.console.warn(describe(*run.report.real_time));
+  warn_of_imbalance(run);
+  return run.report.exit_code;
 }
 
 /// Runs once, or, where an accuracy is asked for, until the error found out is small enough.
@@ -214,13 +265,7 @@ int run_to_accuracy(Run& run) {
   show(run);
   if (run.report.accuracy && !run.report.accuracy->reached())
     run.console.warn(describe(*run.report.accuracy));
-  constexpr double kOpen = 0.1;  // of the energy that moved
-  const double balance = run.report.extremes.relative_balance().value_or(0);
-  if (run.scene.simulation.mode == Mode::kDynamic && balance > kOpen)
-    run.console.warn(
-        fmt::format("{:.0f} % of the energy that moved is not accounted for: steps or rods are too "
-                    "coarse for this motion, or the scheme damps it",
-                    100 * balance));
+  warn_of_imbalance(run);
   return run.report.exit_code;
 }
 
@@ -271,7 +316,7 @@ int run_command(const Words& words) {
   Run run{scene, options,          console, choose_output_folder(options.output, report.label),
           watch, std::move(report)};
   try {
-    return run_to_accuracy(run);
+    return options.real_time_factor ? run_in_real_time(run) : run_to_accuracy(run);
   } catch (const StateError& error) {
     console.error(error.what());
     return kExitSceneInvalid;

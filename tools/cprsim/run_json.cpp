@@ -169,15 +169,22 @@ Json diagnostics_json(const std::vector<Diagnostic>& diagnostics, Severity least
 
 Json timings_json(const RunReport& report) {
   const Timings& timings = report.timings;
-  return {{"started", timings.started},
-          {"jobs", timings.jobs},
-          {"total", timings.total},
-          {"load", timings.load},
-          {"build", timings.build},
-          {"start", timings.start},
-          {"steps", timings.steps},
-          {"outputs", timings.outputs},
-          {"real_time_factor", report.real_time_factor()}};
+  Json json = {{"started", timings.started},
+               {"jobs", timings.jobs},
+               {"total", timings.total},
+               {"load", timings.load},
+               {"build", timings.build},
+               {"start", timings.start},
+               {"steps", timings.steps},
+               {"outputs", timings.outputs},
+               {"real_time_factor", report.real_time_factor()}};
+  if (!report.phases) return json;
+  for (int i = 0; i < kPhaseCount; ++i) {
+    const PhaseClock::Sum& sum = (*report.phases)[static_cast<std::size_t>(i)];
+    json["phases"][to_string(static_cast<Phase>(i))] = {{"seconds", sum.seconds},
+                                                        {"count", sum.count}};
+  }
+  return json;
 }
 
 std::string text_of(const Json& json) {
@@ -225,6 +232,15 @@ std::string to_json(const Scene& scene, const RunReport& report) {
                         {"runs", accuracy.runs},
                         {"section_evaluations_before", accuracy.evaluations},
                         {"fixed_by_the_scene", accuracy.held_back}};
+  }
+  if (report.real_time) {
+    const RealTimeReport& real_time = *report.real_time;
+    json["real_time"] = {{"asked", real_time.asked},
+                         {"factor_of_the_trial", real_time.factor},
+                         {"kept_up", real_time.kept_up()},
+                         {"accuracy", real_time.accuracy},
+                         {"estimate", real_time.estimate ? Json(*real_time.estimate) : Json()},
+                         {"runs", real_time.runs}};
   }
   if (!report.failure.empty()) json["failure"] = failure_json(report);
   if (!report.film_device.empty()) json["drawn_by"] = report.film_device;

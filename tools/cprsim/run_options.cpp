@@ -37,11 +37,17 @@ std::variant<RunOptions, int> parse_run_options(const Words& words) {
             [&](const std::string& text) { options.stills.push_back(to_still(text)); });
   line.number("--max-wall", options.max_wall, "Stop after this many seconds of wall time",
               "greater than 0", [](double value) { return value > 0; });
+  line.number("--real-time-factor", options.real_time_factor,
+              "Find the most accurate settings that simulate so many seconds in one",
+              "greater than 0", [](double value) { return value > 0; });
   line.number("--checkpoint-every", options.checkpoint_every,
               "Write the state to DIR/checkpoint.state every so many simulated seconds",
               "greater than 0", [](double value) { return value > 0; });
   line.text("--from", options.from, "STATE", "Go on from a state file, bit for bit");
   line.flag("--hash", options.hash, "Print a hash of the state after each step");
+  line.flag("--profile", options.profile, "Say where the wall time went, phase by phase");
+  line.text("--trace", options.trace, "FILE",
+            "Write every phase of every step, for chrome://tracing or ui.perfetto.dev");
   line.count("-j,--jobs", options.jobs, 1, "At most this many threads draw the film");
   add_console_options(line, options.console);
   if (const auto code = line.parse(words)) return *code;
@@ -54,6 +60,7 @@ std::vector<std::pair<std::string, std::string>> RunOptions::given() const {
   if (no_video) list.emplace_back("--no-video", "");
   if (no_record) list.emplace_back("--no-record", "");
   if (max_wall) list.emplace_back("--max-wall", shortest(*max_wall));
+  if (real_time_factor) list.emplace_back("--real-time-factor", shortest(*real_time_factor));
   if (!from.empty()) list.emplace_back("--from", from);
   for (const StillOption& still : stills) {
     list.emplace_back("--still",

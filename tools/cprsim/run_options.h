@@ -25,10 +25,13 @@ struct RunOptions {
   bool no_video = false, no_record = false;
   std::vector<StillOption> stills;
   std::optional<double> max_wall;
+  std::optional<double> real_time_factor;
   std::string from;  ///< a state file; empty: from the start
   std::optional<double> checkpoint_every;
   bool hash = false;
-  int jobs = 0;  ///< 0: no limit
+  bool profile = false;
+  std::string trace;  ///< a file; empty: none
+  int jobs = 0;       ///< 0: no limit
 
   /// What changes the result, for run.json.
   std::vector<std::pair<std::string, std::string>> given() const;

@@ -10,10 +10,12 @@
 
 #include "engine/model/scene.h"
 #include "engine/run/simulation.h"
+#include "engine/solve/phase_clock.h"
 #include "scenes/loader/diagnostic.h"
 #include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/expectations.h"
 #include "tools/cprsim/extremes.h"
+#include "tools/cprsim/real_time.h"
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
@@ -51,11 +53,13 @@ struct RunReport {
   Extremes extremes;
   std::string stability;  ///< of a static equilibrium: stable, unstable, singular; or empty
   int unstable_directions = 0;
-  std::optional<AccuracyReport> accuracy;  ///< if one was asked for
+  std::optional<AccuracyReport> accuracy;   ///< if one was asked for
+  std::optional<RealTimeReport> real_time;  ///< likewise
   std::vector<Diagnostic> diagnostics;
   std::vector<ExpectResult> expectations;
-  std::vector<WrittenFile> files;  ///< without run.json
-  std::string film_device;         ///< what drew the pictures; empty if nothing did
+  std::vector<WrittenFile> files;    ///< without run.json
+  std::string film_device;           ///< what drew the pictures; empty if nothing did
+  std::optional<PhaseClock::Sums> phases;  ///< with --profile
   Timings timings;
 
   bool interrupted() const { return end == RunEnd::kInterrupted; }
@@ -77,8 +81,14 @@ std::string describe(const CheckResult& check);
 /// The error asked for and the one found out; one line without its end.
 std::string describe(const AccuracyReport& accuracy);
 
+/// The accuracy that a time budget buys; one line without its end.
+std::string describe(const RealTimeReport& real_time);
+
 /// The closing lines, for people.
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder);
+
+/// Where the time of a run went, for people; empty unless it was measured.
+std::string profile_table(const RunReport& report);
 
 /// What went wrong and the likely causes, for people; several lines.
 std::string explain_failure(const RunReport& report, const std::string& folder);

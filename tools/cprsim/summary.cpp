@@ -64,6 +64,7 @@ std::string energy_line(const Scene& scene, const RunReport& report) {
 }
 
 std::string accuracy_line(const RunReport& report) {
+  if (report.real_time) return "  real time  " + describe(*report.real_time) + "\n";
   return report.accuracy ? "  accuracy   " + describe(*report.accuracy) + "\n" : "";
 }
 
@@ -151,10 +152,60 @@ std::string describe(const AccuracyReport& accuracy) {
                      : "; not reached: the scene fixes " + accuracy.held_back);
 }
 
+std::string describe(const RealTimeReport& real_time) {
+  if (!real_time.kept_up())
+    return fmt::format("{:.3g}x asked for; the coarsest settings reach {:.3g}x", real_time.asked,
+                       real_time.factor);
+  const std::string error = real_time.estimate
+                                ? fmt::format("error about {:.1g} m", *real_time.estimate)
+                                : std::string("error unknown");
+  return fmt::format(
+      "{:.3g}x asked for, which buys --accuracy {:.2g}: {}, {:.3g}x in its trial "
+      "({} trials)",
+      real_time.asked, real_time.accuracy, error, real_time.factor, real_time.runs);
+}
+
 std::string to_summary(const Scene& scene, const RunReport& report, const std::string& folder) {
   return first_line(report) + effects_line(scene) + solver_line(scene, report) +
          accuracy_line(report) + energy_line(scene, report) + expect_lines(report) +
          wrote_line(report, folder);
+}
+
+std::string profile_table(const RunReport& report) {
+  if (!report.phases) return {};
+  static constexpr const char* kWhat[kPhaseCount] = {"rods: equations along their length",
+                                                     "rods: condensed to their ends",
+                                                     "robot: bodies, joints, linear system",
+                                                     "contact of rods",
+                                                     "free bodies (Bullet)",
+                                                     "shapes and energies of each step",
+                                                     "recordings, expectations",
+                                                     "pictures"};
+  const Timings& timings = report.timings;
+  const double all = timings.total;
+  std::string text = fmt::format("\n{:<38}{:>12}{:>8}{:>12}{:>12}\n", "where the time went",
+                                 "seconds", "%", "times", "each, us");
+  const auto line = [&](const char* what, double seconds, long count) {
+    text += fmt::format("  {:<36}{:>12.4f}{:>8.1f}", what, seconds, 100 * seconds / all);
+    if (count > 0)
+      text += fmt::format("{:>12}{:>12.2f}", count, 1e6 * seconds / static_cast<double>(count));
+    text += '\n';
+  };
+  line("scene file", timings.load, 0);
+  double known = timings.load;
+  for (int i = 0; i < kPhaseCount; ++i) {
+    const PhaseClock::Sum& sum = (*report.phases)[static_cast<std::size_t>(i)];
+    if (sum.count > 0) line(kWhat[i], sum.seconds, sum.count);
+    known += sum.seconds;
+  }
+  line("the rest", all - known, 0);
+  line("all", all, 0);
+  const long sections = report.statistics.section_evaluations;
+  const double integrating = report.phases->front().seconds;
+  if (sections > 0)
+    text += fmt::format("  {} section evaluations, {:.0f} ns each\n", sections,
+                        1e9 * integrating / static_cast<double>(sections));
+  return text;
 }
 
 std::string explain_failure(const RunReport& report, const std::string& folder) {

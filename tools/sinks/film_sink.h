@@ -21,6 +21,8 @@ class FilmSink : public Sink {
   void finish() override;
   std::vector<WrittenFile> files() const override;
 
+  bool draws() const override { return true; }
+
   std::string device() const { return recorder_.device(); }
 
  private:

@@ -26,6 +26,8 @@ class FrameSink : public Sink {
 
   std::vector<WrittenFile> files() const override;
 
+  bool draws() const override { return true; }
+
   std::string device() const { return renderer_->device(); }
 
  private:

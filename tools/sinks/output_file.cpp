@@ -36,9 +36,13 @@ void sync_folder(const std::filesystem::path& folder) {
   ::close(descriptor);
 }
 
+void rename_part_unsynced(const std::filesystem::path& part, const std::filesystem::path& path) {
+  if (::rename(part.c_str(), path.c_str()) != 0) fail("rename to its final name", part);
+}
+
 /// The step from a whole part to the file.
 void rename_part(const std::filesystem::path& part, const std::filesystem::path& path) {
-  if (::rename(part.c_str(), path.c_str()) != 0) fail("rename to its final name", part);
+  rename_part_unsynced(part, path);
   sync_folder(path.parent_path());
 }
 
@@ -96,6 +100,12 @@ void OutputFile::commit() {
   rename_part(part_, path_);
 }
 
+void OutputFile::commit_unsynced() {
+  flush();
+  close_descriptor();
+  rename_part_unsynced(part_, path_);
+}
+
 void OutputFile::close_descriptor() {
   const int descriptor = std::exchange(descriptor_, -1);
   if (::close(descriptor) != 0) fail("write", part_);
@@ -105,6 +115,12 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
   OutputFile file(path);
   file.write(text);
   file.commit();
+}
+
+void write_file_unsynced(const std::filesystem::path& path, std::string_view text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit_unsynced();
 }
 
 void claim_standard_streams() {

@@ -31,6 +31,9 @@ class OutputFile {
   void sync();
   /// Flushes, syncs and gives the file its name.
   void commit();
+  /// The same, but leaves it to the system when the disk gets it: complete for every reader, also
+  /// after this process is killed, though perhaps not after a power cut.
+  void commit_unsynced();
 
   const std::filesystem::path& path() const { return path_; }
 
@@ -51,6 +54,9 @@ void commit_part(const std::filesystem::path& path);
 
 /// The whole of a small file at once.
 void write_file(const std::filesystem::path& path, std::string_view text);
+
+/// The same by commit_unsynced(), for files that are written many times a second.
+void write_file_unsynced(const std::filesystem::path& path, std::string_view text);
 
 /// A standard stream that the caller has closed is taken by /dev/null, unwritable: no file of ours
 /// may get its number and then a message in its middle.

@@ -80,6 +80,7 @@ void Recording::finish() {
   if (csv_) complete(*csv_);
   for (const auto& arrays : arrays_)
     complete(*arrays);
+  if (vtk_) complete(*vtk_);
   if (complaint) std::rethrow_exception(complaint);
 }
 

@@ -36,6 +36,9 @@ class Sink {
   /// Completes the files, also after a run that failed or was interrupted.
   virtual void finish() = 0;
   virtual std::vector<WrittenFile> files() const = 0;
+
+  /// Its work is pictures, not numbers.
+  virtual bool draws() const { return false; }
 };
 
 }  // namespace cprsim

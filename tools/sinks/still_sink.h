@@ -24,6 +24,8 @@ class StillSink : public Sink {
   void finish() override;
   std::vector<WrittenFile> files() const override;
 
+  bool draws() const override { return true; }
+
  private:
   void draw(const Snapshot& snapshot);
 

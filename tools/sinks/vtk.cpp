@@ -201,15 +201,27 @@ VtkWriter::VtkWriter(const std::filesystem::path& folder, std::string prefix)
 
 void VtkWriter::write_frame(const Scene& scene, const Snapshot& snapshot) {
   has_contacts_ = writes_contacts(scene);
-  write_file(folder_ / frame_name("", times_.size()), to_vtp(scene, snapshot));
+  write_file_unsynced(folder_ / frame_name("", times_.size()), to_vtp(scene, snapshot));
   if (has_contacts_)
-    write_file(folder_ / frame_name(kContacts, times_.size()), to_contacts_vtp(snapshot));
+    write_file_unsynced(folder_ / frame_name(kContacts, times_.size()), to_contacts_vtp(snapshot));
   times_.push_back(snapshot.time);
-  rewrite_collection(prefix_, "");
-  if (has_contacts_) rewrite_collection(prefix_ + "_contacts", kContacts);
+  // the list grows with the frames: written after each, it would be most of what is written
+  constexpr std::size_t kPart = 100;
+  if (times_.size() > listed_ + listed_ / kPart) list_frames(Written::kWhenever);
 }
 
-void VtkWriter::rewrite_collection(const std::string& name, const std::string& part) const {
+void VtkWriter::finish() {
+  list_frames(Written::kNow);
+}
+
+void VtkWriter::list_frames(Written written) {
+  listed_ = times_.size();
+  rewrite_collection(prefix_, "", written);
+  if (has_contacts_) rewrite_collection(prefix_ + "_contacts", kContacts, written);
+}
+
+void VtkWriter::rewrite_collection(const std::string& name, const std::string& part,
+                                   Written written) const {
   tinyxml2::XMLPrinter xml;
   open_vtk_file(xml, "Collection");
   xml.OpenElement("Collection");
@@ -222,7 +234,8 @@ void VtkWriter::rewrite_collection(const std::string& name, const std::string& p
   }
   xml.CloseElement();
   xml.CloseElement();
-  write_file(folder_ / (name + ".pvd"), xml.CStr());
+  const auto write = written == Written::kNow ? write_file : write_file_unsynced;
+  write(folder_ / (name + ".pvd"), xml.CStr());
 }
 
 std::string VtkWriter::frame_name(const std::string& part, std::size_t frame) const {

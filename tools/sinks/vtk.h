@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods as ParaView polylines: one .vtp per instant in its own folder and a .pvd that lists them
-// with their times. The .pvd is rewritten whole after every frame, so that a killed run still
-// opens. Where rods may touch something, the points at which they do are a second such series.
+// with their times. The .pvd is rewritten whole as frames come, at first after each, later after
+// every hundredth part more, so that a killed run still opens. Where rods may touch something, the
+// points at which they do are a second such series.
 #pragma once
 
 #include <filesystem>
@@ -21,18 +22,25 @@ class VtkWriter {
 
   void write_frame(const Scene& scene, const Snapshot& snapshot);
 
+  /// Lists the last frames.
+  void finish();
+
   /// Whether frames have had contacts beside rods.
   bool has_contacts() const { return has_contacts_; }
 
   long frames() const { return static_cast<long>(times_.size()); }
 
  private:
-  void rewrite_collection(const std::string& name, const std::string& part) const;
+  enum class Written { kNow, kWhenever };  ///< to the disk
+
+  void list_frames(Written written);
+  void rewrite_collection(const std::string& name, const std::string& part, Written written) const;
   std::string frame_name(const std::string& part, std::size_t frame) const;
 
   std::filesystem::path folder_;
   std::string prefix_;
   std::vector<double> times_;
+  std::size_t listed_ = 0;  ///< frames in the .pvd
   bool has_contacts_ = false;
 };
 
