@@ -316,11 +316,6 @@ bool Equations::solve(double mu) {
   return x_.allFinite();
 }
 
-Vec6 Equations::body_direction(int body) const {
-  if (body < 0 || bodies_held_) return Vec6::Zero();
-  return in_space(&x_[freedoms_ * body]);
-}
-
 template <int N>
 void Equations::distribute_to_rods() {
   using VecN = Eigen::Matrix<double, N, 1>;

@@ -41,9 +41,11 @@ const std::vector<Layer>& layers() {
       {"engine/section/", section, {}},
       {"engine/rod/", rod, sundials},
       {"engine/solve/", {"engine/math/"}, sundials},
-      // the snapshot is plain data; the problem is the interface by which solvers see the equations
+      // the snapshot is plain data; the problem is the interface by which solvers see the
+      // equations; the clock measures them
       {"engine/robot/",
-       join(rod, {"engine/rod/", "engine/solve/problem.h", "engine/run/snapshot.h"}),
+       join(rod, {"engine/rod/", "engine/solve/problem.h", "engine/solve/phase_clock.h",
+                  "engine/run/snapshot.h"}),
        {}},
       {"engine/run/", {"engine/"}, {}},
       {"engine/study/", {"engine/"}, {}},
@@ -57,7 +59,8 @@ const std::vector<Layer>& layers() {
       {"render/", join(model, {"engine/run/snapshot.h"}), join({"EGL/", "GL/", "stb/"}, kPosix)},
       {"tools/",
        {"engine/", "scenes/", "collision/", "render/"},
-       join({"CLI/", "fmt/", "hdf5.h", "minizip/", "nlohmann/", "tinyxml2.h", "xxhash.h"}, kPosix)},
+       join({"CLI/", "fmt/", "hdf5.h", "minizip/", "mpi.h", "nlohmann/", "tinyxml2.h", "xxhash.h"},
+            kPosix)},
       {"tests/", {""}, {""}},
   };
   return all;

@@ -77,6 +77,16 @@ double estimated_error(const PositionTrack& looser, const PositionTrack& track) 
   return farthest(looser, track) / kShare;
 }
 
+void free_settings(SolverSpec& solver) {
+  solver.tolerance.reset();
+  solver.step.reset();
+  solver.points.reset();
+  solver.elements.reset();
+  solver.order.reset();
+  solver.scheme.reset();
+  solver.residual_tolerance.reset();
+}
+
 PositionTrack::PositionTrack(const Scene& scene)
     : end_(scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration) {}
 

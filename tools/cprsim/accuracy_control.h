@@ -43,6 +43,9 @@ class PositionTrack : public Sink {
 /// (1) from two runs of which the first is made for errors of at least ten times the size, m.
 double estimated_error(const PositionTrack& looser, const PositionTrack& track);
 
+/// Takes away what a scene says of step, tolerance, scheme and resolution; its method stays.
+void free_settings(SolverSpec& solver);
+
 /// Residual to which equations are solved so that what is left does not count beside the accuracy
 /// that a scene asks for: residuals are relative to the robot's size and stiffness.
 double residual_for(const Scene& scene);

@@ -16,17 +16,6 @@ constexpr double kCoarsest = 0.1;  // of the longest rod
 constexpr int kDecades = 9;
 constexpr double kApart = 9.9;  // of the accuracies of two runs whose distance tells the error
 
-/// Step, resolution and scheme are free; the method stays.
-void free_settings(SolverSpec& solver) {
-  solver.tolerance.reset();
-  solver.step.reset();
-  solver.points.reset();
-  solver.elements.reset();
-  solver.order.reset();
-  solver.scheme.reset();
-  solver.residual_tolerance.reset();
-}
-
 }  // namespace
 
 RealTimeSearch::RealTimeSearch(const Scene& scene, double factor) : scene_(scene) {

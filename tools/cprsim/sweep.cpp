@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <csignal>
-#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -13,8 +12,10 @@
 #include "tools/cprsim/interrupt.h"
 #include "tools/cprsim/output_folder.h"
 #include "tools/cprsim/progress.h"
+#include "tools/cprsim/ranks.h"
 #include "tools/cprsim/stopwatch.h"
 #include "tools/cprsim/study_command.h"
+#include "tools/cprsim/sweep_journal.h"
 #include "tools/cprsim/sweep_result.h"
 #include "tools/series/pairing.h"
 #include "tools/series/read_series.h"
@@ -29,6 +30,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kReport = "sweep.json";
 constexpr const char* kSchema = "cprsim-sweep/";
+constexpr const char* kJournal = "sweep.journal";  // other processes' have a number behind it
 
 bool interrupted() {
   return stop_signal() != 0;
@@ -41,88 +43,6 @@ std::string signature_of(const SweepPlan& plan, const SweepOptions& options) {
     text += "|" + name + "=" + value;
   return text;
 }
-
-Json journal_entry(std::size_t index, const SweepRun& run) {
-  const RunStatistics& s = run.statistics;
-  return {{"run", index},
-          {"refusal", run.refusal},
-          {"failure", run.failure},
-          {"errors", run.errors},
-          {"last", run.last},
-          {"cpu", run.cpu_seconds},
-          {"end", run.end_time},
-          {"counts",
-           {s.steps, s.rejected, s.retried, s.iterations, s.start_iterations, s.section_evaluations,
-            s.factorizations}},
-          {"residual", s.worst_residual}};
-}
-
-SweepRun run_from(const Json& json) {
-  SweepRun run;
-  run.known = true;
-  run.refusal = json.at("refusal");
-  run.failure = json.at("failure");
-  run.errors = json.at("errors").get<std::vector<double>>();
-  run.last = json.at("last").get<std::vector<double>>();
-  run.cpu_seconds = json.at("cpu");
-  run.end_time = json.at("end");
-  RunStatistics& s = run.statistics;
-  const auto counts = json.at("counts").get<std::vector<long>>();
-  long* const fields[] = {&s.steps,         &s.rejected,         &s.retried,
-                          &s.iterations,    &s.start_iterations, &s.section_evaluations,
-                          &s.factorizations};
-  for (std::size_t i = 0; i < std::size(fields); ++i)
-    *fields[i] = counts.at(i);
-  s.worst_residual = json.at("residual");
-  return run;
-}
-
-/// Runs as they are done, one line each: what an interruption leaves behind. Its first line is the
-/// signature.
-class Journal {
- public:
-  Journal(fs::path path, std::string signature)
-      : path_(std::move(path)), signature_(std::move(signature)) {}
-
-  /// Takes over what an earlier sweep has done. @throws UsageError if that was another sweep
-  void resume(SweepResult& result) const {
-    std::ifstream stream(path_);
-    std::string line;
-    if (!std::getline(stream, line)) return;
-    if (line != signature_)
-      throw UsageError("--resume: " + path_.parent_path().string() +
-                       " holds a sweep of another scene or with other options; choose another "
-                       "folder with -o or leave --resume out");
-    while (std::getline(stream, line) && !stream.eof()) {
-      const Json json = Json::parse(line, nullptr, false);
-      if (json.is_discarded()) continue;
-      if (json.contains("spread"))
-        result.reference_spread = json.at("spread").get<std::vector<double>>();
-      else if (json.at("run").get<std::size_t>() < result.runs.size())
-        result.runs[json.at("run").get<std::size_t>()] = run_from(json);
-    }
-  }
-
-  void begin(const SweepResult& result) {
-    std::string text = signature_ + "\n";
-    if (!result.reference_spread.empty())
-      text += Json{{"spread", result.reference_spread}}.dump() + "\n";
-    for (std::size_t i = 0; i < result.runs.size(); ++i)
-      if (result.runs[i].known) text += journal_entry(i, result.runs[i]).dump() + "\n";
-    write_file(path_, text);
-    stream_.open(path_, std::ios::app);
-  }
-
-  void add(const Json& json) {
-    stream_ << json.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
-    if (!stream_.flush()) throw OutputError("cannot write " + path_.string());
-  }
-
- private:
-  fs::path path_;
-  std::string signature_;
-  std::ofstream stream_;
-};
 
 /// Error of a run against a reference, by the measure's norm.
 double error_of(const SweepMeasureName& measure, const Series& run, const Series& reference) {
@@ -147,13 +67,13 @@ double error_of(const SweepMeasureName& measure, const Series& run, const Series
 class Sweep {
  public:
   Sweep(const SweepOptions& options, const SweepPlan& plan, const Console& console,
-        SweepResult& result, Journal& journal)
+        SweepResult& result, SweepJournal& journal)
       : options_(options), plan_(plan), console_(console), result_(result), journal_(journal) {}
 
+  /// @param left indices of the points to be run
   /// @return whether it got to the end
-  bool run() {
-    for (std::size_t i = 0; i < plan_.points.size(); ++i)
-      if (!result_.runs[i].known) left_.push_back(i);
+  bool run(const std::vector<std::size_t>& left) {
+    left_ = left;
     if (left_.empty()) return true;
     solve_references();
     if (interrupted()) return false;
@@ -166,7 +86,7 @@ class Sweep {
       const SweepRun run = solve(left_[k]);
       if (interrupted()) return;  // cut short: not a result
       const std::lock_guard lock(one_at_a_time);
-      journal_.add(journal_entry(left_[k], run));
+      journal_.add(left_[k], run);
       result_.runs[left_[k]] = run;
       progress.update(++done);
     });
@@ -232,7 +152,7 @@ class Sweep {
       for (std::size_t k = 0; k < looser.size(); ++k)
         result_.reference_spread[m] = std::max(
             result_.reference_spread[m], error_of(plan_.measures[m], looser[k], references_[k]));
-    journal_.add({{"spread", result_.reference_spread}});
+    journal_.add_spread(result_.reference_spread);
   }
 
   SweepRun solve(std::size_t index) const {
@@ -258,7 +178,7 @@ class Sweep {
   const SweepPlan& plan_;
   const Console& console_;
   SweepResult& result_;
-  Journal& journal_;
+  SweepJournal& journal_;
   std::vector<std::size_t> left_;
   std::vector<Series> references_;
 };
@@ -277,26 +197,87 @@ std::string reference_text(const SweepPlan& plan) {
   return "";
 }
 
+/// Journals of processes other than the first.
+std::vector<fs::path> other_journals(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().starts_with(std::string(kJournal) + "."))
+      found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// What they hold becomes the first one's.
+void take_over(const std::vector<fs::path>& journals, const std::string& signature,
+               SweepResult& result) {
+  for (const fs::path& path : journals)
+    SweepJournal(path, signature).resume(result);
+}
+
+SweepResult nothing_done(const SweepPlan& plan, const SweepOptions& options, const Ranks& ranks) {
+  return {plan,
+          std::vector<SweepRun>(plan.points.size()),
+          {},
+          reference_text(plan),
+          0,
+          ranks.size() * (options.jobs > 0
+                              ? options.jobs
+                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+          "running",
+          options.path,
+          options.given()};
+}
+
+/// Every so many of the points that are left, told by the first process.
+std::vector<std::size_t> share_of(const std::string& left, const Ranks& ranks) {
+  const auto all = Json::parse(left).get<std::vector<std::size_t>>();
+  std::vector<std::size_t> share;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (static_cast<int>(i % static_cast<std::size_t>(ranks.size())) == ranks.rank())
+      share.push_back(all[i]);
+  return share;
+}
+
+/// The part of a process that is not the first: into a journal of its own.
+int help_along(const fs::path& path, const SweepPlan& plan, const SweepOptions& options,
+               const Console& console, const Ranks& ranks) {
+  SweepResult result = nothing_done(plan, options, ranks);
+  const std::vector<std::size_t> share = share_of(ranks.tell(""), ranks);
+  SweepJournal journal(path / fmt::format("{}.{}", kJournal, ranks.rank()),
+                       signature_of(plan, options));
+  journal.begin(result);
+  const bool whole = Sweep(options, plan, console, result, journal).run(share);
+  ranks.meet();
+  return whole ? kExitDone : 128 + stop_signal();
+}
+
 int sweep_into(const fs::path& path, const SweepPlan& plan, const SweepOptions& options,
-               const Console& console) {
+               const Console& console, const Ranks& ranks) {
   const Stopwatch watch;
   const OutputFolder folder(path, {kReport, kSchema}, options.resume);
-  SweepResult result{plan,
-                     std::vector<SweepRun>(plan.points.size()),
-                     {},
-                     reference_text(plan),
-                     0,
-                     options.jobs > 0
-                         ? options.jobs
-                         : std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
-                     "running",
-                     options.path,
-                     options.given()};
-  Journal journal(path / "sweep.journal", signature_of(plan, options));
+  SweepResult result = nothing_done(plan, options, ranks);
+  const std::string signature = signature_of(plan, options);
+  SweepJournal journal(path / kJournal, signature);
+  const auto earlier = other_journals(path);
   if (options.resume) journal.resume(result);
+  if (options.resume) take_over(earlier, signature, result);
   journal.begin(result);
+  for (const fs::path& other : earlier)
+    fs::remove(other);
   write_file(path / kReport, to_json(result));  // marks the folder as ours
-  const bool whole = Sweep(options, plan, console, result, journal).run();
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < plan.points.size(); ++i)
+    if (!result.runs[i].known) left.push_back(i);
+  const std::vector<std::size_t> share = share_of(ranks.tell(Json(left).dump()), ranks);
+  Sweep(options, plan, console, result, journal).run(share);
+  ranks.meet();
+  const auto others = other_journals(path);
+  take_over(others, signature, result);
+  if (!others.empty()) journal.begin(result);
+  for (const fs::path& other : others)
+    fs::remove(other);
+  const bool whole = std::all_of(result.runs.begin(), result.runs.end(),
+                                 [](const SweepRun& run) { return run.known; });
   result.seconds = watch.seconds();
   result.status = whole ? "done" : "interrupted";
   const bool any = std::any_of(result.runs.begin(), result.runs.end(),
@@ -308,7 +289,7 @@ int sweep_into(const fs::path& path, const SweepPlan& plan, const SweepOptions& 
   console.say(to_summary(result, path.string()));
   if (!whole) {
     console.error("interrupted: go on with --resume");
-    return 128 + stop_signal();
+    return 128 + (interrupted() ? stop_signal() : SIGTERM);
   }
   if (any) return kExitDone;
   const SweepRun& first = result.runs.front();
@@ -319,21 +300,32 @@ int sweep_into(const fs::path& path, const SweepPlan& plan, const SweepOptions& 
 }  // namespace
 
 int sweep_command(const Words& words) {
-  const auto parsed = parse_sweep_options(words);
+  auto parsed = parse_sweep_options(words);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
-  const SweepOptions& options = std::get<SweepOptions>(parsed);
+  SweepOptions& options = std::get<SweepOptions>(parsed);
+  const Ranks ranks;
+  // a process is what a launcher counts in
+  if (ranks.size() > 1 && options.jobs == 0) options.jobs = 1;
+  if (!ranks.first()) {
+    options.console.quiet = 2;
+    options.console.json = false;
+  }
   const Console console(options.console);
   return answer(options.path, options.scene, console, [&](const Scene& scene) {
-    if (options.path == "-")
-      throw UsageError("a sweep reads its scene again and again: name a file");
-    const SweepPlan plan = make_plan(scene, options);
     try {
-      return sweep_into(choose_output_folder(options.output, plan.label + "_sweep"), plan, options,
-                        console);
-    } catch (const TableError& error) {
-      throw UsageError(error.what());
-    } catch (const PairingError& error) {
-      throw UsageError(error.what());
+      if (options.path == "-")
+        throw UsageError("a sweep reads its scene again and again: name a file");
+      const SweepPlan plan = make_plan(scene, options);
+      const fs::path folder = choose_output_folder(options.output, plan.label + "_sweep");
+      return ranks.first() ? sweep_into(folder, plan, options, console, ranks)
+                           : help_along(folder, plan, options, console, ranks);
+    } catch (const std::exception& error) {
+      // others may be waiting for this one
+      if (ranks.size() > 1) console.error(error.what());
+      ranks.give_up(kExitUsage);
+      if (dynamic_cast<const TableError*>(&error) || dynamic_cast<const PairingError*>(&error))
+        throw UsageError(error.what());
+      throw;
     }
   });
 }

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether <accuracy> keeps what it promises: scenes are run for errors that are asked for, as
+// `cprsim run` does, and compared with runs for a hundredth of them. Writes
+// FOLDER/accuracy_kept.md. Ends with 1 if an error is more than ten times the one asked for.
+//   cprsim_accuracy_kept [--quick] [--only NAME] FOLDER
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scenes/loader/load.h"
+#include "tools/cprsim/accuracy_control.h"
+#include "tools/cprsim/quiet_run.h"
+
+namespace cprsim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kAsked[] = {1e-3, 1e-4, 1e-5};  // of the longest rod
+constexpr double kTighter = 100;
+constexpr double kMostSeconds = 0.5;  // of motion
+constexpr double kAwful = 10;
+
+struct Outcome {
+  std::string scene;
+  double length = 0, asked = 0;  ///< m
+  double estimate = 0, error = 0;
+  bool reached = false;
+  int runs = 0;
+  long evaluations = 0, all_evaluations = 0;  ///< of the last run, of all
+  std::string failure;
+};
+
+double longest_rod(const Scene& scene) {
+  double length = 0;
+  for (const RodSpec& rod : scene.rods)
+    length = std::max(length, rod.length);
+  return length;
+}
+
+std::optional<Scene> scene_of(const fs::path& path) {
+  const LoadResult loaded = load_scene(path.string());
+  if (loaded.scene == nullptr || !loaded.expected_failure.empty()) return std::nullopt;
+  Scene scene = *loaded.scene;
+  const bool touches =
+      scene.effects.has(Effect::kContact) || scene.effects.has(Effect::kSelfContact);
+  if (scene.rods.empty() || touches) return std::nullopt;
+  free_settings(scene.solver);
+  if (scene.simulation.mode == Mode::kDynamic)
+    scene.simulation.duration = std::min(scene.simulation.duration, kMostSeconds);
+  return scene;
+}
+
+/// The run that `cprsim run --accuracy` ends with.
+Outcome run_for(Scene scene, double asked, PositionTrack& track) {
+  const auto never = [] { return false; };
+  Outcome outcome;
+  outcome.length = longest_rod(scene);
+  outcome.asked = asked;
+  scene.solver.accuracy = asked;
+  AccuracyControl control(scene);
+  control.fly_pilot(never);
+  for (bool again = true; again;) {
+    const QuietRun run = run_quietly(control.scene(), onlooker(control.track()), never);
+    if (run.status != RunStatus::kDone) {
+      outcome.failure = run.failure;
+      return outcome;
+    }
+    outcome.evaluations = run.statistics.section_evaluations;
+    track = control.track();
+    again = control.refine(outcome.evaluations);
+  }
+  outcome.estimate = control.report().estimate;
+  outcome.reached = control.report().reached();
+  outcome.runs = control.report().runs;
+  outcome.all_evaluations = control.report().evaluations + outcome.evaluations;
+  return outcome;
+}
+
+Outcome study(const std::string& name, const Scene& scene, double asked) {
+  PositionTrack track(scene);
+  Outcome outcome = run_for(scene, asked, track);
+  outcome.scene = name;
+  if (!outcome.failure.empty()) return outcome;
+  Scene tight = scene;
+  tight.solver.accuracy = asked / kTighter;
+  tight.solver.residual_tolerance = residual_for(tight);
+  PositionTrack reference(tight);
+  const QuietRun run = run_quietly(tight, onlooker(reference), [] { return false; });
+  if (run.status != RunStatus::kDone) outcome.failure = "its reference: " + run.failure;
+  outcome.error = farthest(track, reference);
+  return outcome;
+}
+
+void write_page(const std::vector<Outcome>& outcomes, const fs::path& folder) {
+  std::ofstream page(folder / "accuracy_kept.md");
+  if (!page) throw std::runtime_error("cannot write into " + folder.string());
+  std::size_t done = 0, kept = 0, within_three = 0, within_thirty = 0, awful = 0, warned = 0;
+  for (const Outcome& o : outcomes) {
+    if (!o.failure.empty()) continue;
+    ++done;
+    const double ratio = o.error / o.asked;
+    kept += ratio <= 1 ? 1 : 0;
+    within_three += ratio <= 1 && ratio >= 1.0 / 3 ? 1 : 0;
+    within_thirty += ratio <= 1 && ratio >= 1.0 / 30 ? 1 : 0;
+    awful += ratio > kAwful ? 1 : 0;
+    warned += ratio > 1 && !o.reached ? 1 : 0;
+  }
+  char line[512];
+  page
+      << "# Whether an accuracy that is asked for is kept\n\n"
+         "`<accuracy>1e-5</accuracy>`, or `--accuracy 1e-5`, lets the program choose resolution "
+         "and "
+         "steps. It runs the scene twice, the first time with ten times the error asked for; a "
+         "third "
+         "of the largest distance between the two, over all links and tips of rods, is reported as "
+         "the error of the second, and the scene is run again with finer settings while that is "
+         "more "
+         "than what was asked.\n\n"
+         "Here every shipped scene with rods and without contact is run for errors of 1e-3, 1e-4 "
+         "and "
+         "1e-5 of its longest rod, at most 0.5 s of a motion, without the step, scheme and "
+         "resolution that it sets. The true error is the largest distance of any link or tip, at "
+         "201 "
+         "instants, from a run for a hundredth of the error. Where a run stays far below what was "
+         "asked it is because rods have three cells at least. Made by `cprsim_accuracy_kept docs` "
+         "(tests/bench/accuracy_kept.cpp).\n\n";
+  std::snprintf(
+      line, sizeof line,
+      "Of %zu runs the error is at most what was asked for in %zu (%.0f %%), %zu times "
+      "more than ten times as large. Where it is larger, %zu runs said so. It lies within a factor "
+      "of 3 below in %zu, of 30 in %zu.\n\n",
+      done, kept, 100.0 * static_cast<double>(kept) / static_cast<double>(done), awful, warned,
+      within_three, within_thirty);
+  page << line
+       << "| scene | asked, m | true error | over asked | estimate | runs | section evaluations of "
+          "the last | of all |\n|---|---|---|---|---|---|---|---|\n";
+  for (const Outcome& o : outcomes) {
+    if (!o.failure.empty()) {
+      page << "| " << o.scene << " | " << o.asked << " | " << o.failure << " | | | | | |\n";
+      continue;
+    }
+    std::snprintf(line, sizeof line, "| %s | %.1e | %.1e | %.2g | %.1e%s | %d | %ld | %ld |\n",
+                  o.scene.c_str(), o.asked, o.error, o.error / o.asked, o.estimate,
+                  o.reached ? "" : " (not reached)", o.runs, o.evaluations, o.all_evaluations);
+    page << line;
+  }
+}
+
+int run(const std::vector<std::string>& words) {
+  bool quick = false;
+  std::string only, folder;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--quick")
+      quick = true;
+    else if (words[i] == "--only" && i + 1 < words.size())
+      only = words[++i];
+    else
+      folder = words[i];
+  }
+  if (folder.empty()) throw std::runtime_error("usage: [--quick] [--only NAME] FOLDER");
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::recursive_directory_iterator(CPRSIM_SOURCE_DIR "/scenes"))
+    if (entry.path().extension() == ".xml" &&
+        entry.path().string().find("schema") == std::string::npos)
+      paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  std::vector<Outcome> outcomes;
+  bool awful = false;
+  for (const fs::path& path : paths) {
+    const std::string name = path.stem().string();
+    if (!only.empty() ? name != only : quick && name != "slider_crank" && name != "released_rod")
+      continue;
+    const std::optional<Scene> scene = scene_of(path);
+    if (!scene) continue;
+    for (const double part : kAsked) {
+      if (quick && part < 1e-3) continue;
+      outcomes.push_back(study(name, *scene, part * longest_rod(*scene)));
+      const Outcome& o = outcomes.back();
+      awful = awful || (o.failure.empty() && o.error > kAwful * o.asked);
+      std::printf("%s %.1e: error %.2e (%.2g of it), estimate %.1e, %d runs %s\n", name.c_str(),
+                  o.asked, o.error, o.error / o.asked, o.estimate, o.runs, o.failure.c_str());
+      std::fflush(stdout);
+    }
+  }
+  write_page(outcomes, folder);
+  return awful ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace cprsim
+
+int main(int count, char** words) {
+  try {
+    return cprsim::run({words + 1, words + count});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
