@@ -12,7 +12,7 @@ packages=(
   nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev
   ffmpeg fonts-dejavu-core
   libgtest-dev libbenchmark-dev libsdformat-dev trang jing libxml2-utils
-  clang-format python3 gnuplot-nox
+  clang-format python3 gnuplot-nox valgrind
 )
 
 missing=()

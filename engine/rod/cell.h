@@ -28,22 +28,37 @@ namespace cprsim {
 
 /// Which of (6) is an unknown. Picked once per rod and mode.
 enum class CellLaw {
-  kKirchhoff,         ///< v = v0: no shear, no extension
-  kExtensibleStatic,  ///< (6) explicit, valid while k = 0
-  kExtensible,        ///< stage v lifted
-  kKirchhoffFluid,    ///< v = v0 and a fluid's force in (3): engine/section/fluid.h
-  kExtensibleFluid,   ///< stage v lifted, likewise
-  kTendons            ///< stage v lifted, and tendons are part of the law
+  kKirchhoff,          ///< v = v0: no shear, no extension
+  kExtensibleStatic,   ///< (6) explicit, valid while k = 0
+  kExtensible,         ///< stage v lifted
+  kKirchhoffGeneral,   ///< kKirchhoff; sections may vary and have rotary inertia, t of (4)
+  kExtensibleGeneral,  ///< kExtensible, likewise
+  kKirchhoffFluid,     ///< v = v0 and a fluid's force in (3): engine/section/fluid.h
+  kExtensibleFluid,    ///< stage v lifted, likewise
+  kTendons             ///< stage v lifted, and tendons are part of the law
 };
 
 /// Whether stage rates v are unknowns.
 constexpr bool lifts_stretch(CellLaw law) {
   return law == CellLaw::kExtensible || law == CellLaw::kExtensibleFluid ||
-         law == CellLaw::kTendons;
+         law == CellLaw::kTendons || law == CellLaw::kExtensibleGeneral;
 }
 
 constexpr bool immersed(CellLaw law) {
   return law == CellLaw::kKirchhoffFluid || law == CellLaw::kExtensibleFluid;
+}
+
+/// Whether all sections of a cell have the model's own coefficients and no rotary inertia.
+constexpr bool is_plain(CellLaw law) {
+  return law == CellLaw::kKirchhoff || law == CellLaw::kExtensible ||
+         law == CellLaw::kExtensibleStatic;
+}
+
+/// The law of sections that vary or have rotary inertia, if that is all there is to add.
+constexpr CellLaw generalized(CellLaw law) {
+  return !is_plain(law)               ? law
+         : law == CellLaw::kKirchhoff ? CellLaw::kKirchhoffGeneral
+                                      : CellLaw::kExtensibleGeneral;
 }
 
 /// Pose and internal wrench at a section, world axes; R row-major.
@@ -58,12 +73,12 @@ struct CellSection {
   double rhoJ[3] = {};  ///< section inertia, kg m
 };
 
-/// What all cells of a rod share during one solve; its coefficients are those of all sections
-/// unless `sections` gives each stage its own.
+/// What all cells of a rod share during one solve. Its own coefficients are those of all sections
+/// for plain laws; the others read `sections` and `rotary`.
 struct CellModel : CellSection {
   const ArcTableau* table = nullptr;
   double h = 0;                           ///< cell length, m
-  const CellSection* sections = nullptr;  ///< of the cell's stages, or null
+  const CellSection* sections = nullptr;  ///< of the cell's stages
   bool rotary = false;
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)

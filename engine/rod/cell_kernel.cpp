@@ -16,15 +16,14 @@ constexpr int round_up(int n) {
   return (n + 7) / 8 * 8;
 }
 
-/// Coefficients by stage: those of the model, or one set each.
+/// Coefficients by stage.
+template <CellLaw law>
 struct Sections {
   const CellSection* first;
-  int next;
 
-  explicit Sections(const CellModel& M)
-      : first(M.sections ? M.sections : &M), next(M.sections ? 1 : 0) {}
+  explicit Sections(const CellModel& M) : first(is_plain(law) ? &M : M.sections) {}
 
-  const CellSection& operator[](int stage) const { return first[stage * next]; }
+  const CellSection& operator[](int stage) const { return first[is_plain(law) ? 0 : stage]; }
 };
 
 /// What evaluate_rotary() reads.
@@ -43,7 +42,7 @@ struct RotaryModel {
 template <int S, CellLaw law>
 void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeState& end) {
   const ArcTableau& T = *M.table;
-  const Sections at(M);
+  const Sections<law> at(M);
   const double h = M.h;
   const M3 R0 = load_matrix(start.R);
   const V3 p0 = load(start.p), n0 = load(start.n), m0 = load(start.m);
@@ -73,7 +72,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       store(st[j].v,
             load(st[j].v0) + scaled(at[j].C_se, transposed_times(load_matrix(st[j].R), n)));
     }
-  } else if constexpr (law == CellLaw::kKirchhoff || law == CellLaw::kKirchhoffFluid) {
+  } else if constexpr (!lifts_stretch(law)) {
     for (int j = 0; j < S; ++j)
       store(st[j].v, load(st[j].v0));
   }
@@ -102,10 +101,11 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       n = n + (h * T.a[j][k]) * n_s[k];
     store(st[j].n, n);
     m_s[j] = cross(n, tau[j]);
-    if (M.rotary) {
-      evaluate_rotary(RotaryModel{at[j].rhoJ, M.c_v, M.c_w, M.body_rates}, st[j]);
-      m_s[j] = m_s[j] + load(st[j].torque);
-    }
+    if constexpr (!is_plain(law))
+      if (M.rotary) {
+        evaluate_rotary(RotaryModel{at[j].rhoJ, M.c_v, M.c_w, M.body_rates}, st[j]);
+        m_s[j] = m_s[j] + load(st[j].torque);
+      }
   }
   // (5), (6)
   for (int j = 0; j < S; ++j) {
@@ -150,7 +150,7 @@ struct Linearization {
   Rows<W> fluid[immersed(law) ? S : 1];
   alignas(64) double law_rows[kLifted][W];
 
-  void take_columns(const double* Y) {
+  [[gnu::always_inline]] void take_columns(const double* Y) {
     Rows<W>* const target[4] = {&phi0, &p0, &n0, &m0};
     for (int b = 0; b < 4; ++b) {
       set_zero(*target[b]);
@@ -174,7 +174,7 @@ struct Linearization {
 
   // d tau = phi × tau + R dv
   void tangents(const CellModel& M, const CellStage* st) {
-    const Sections at(M);
+    const Sections<law> at(M);
     for (int j = 0; j < S; ++j) {
       set_zero(tau[j]);
       const M3 R = load_matrix(st[j].R);
@@ -190,7 +190,7 @@ struct Linearization {
   }
 
   void forces(const CellModel& M, const CellStage* st) {
-    const Sections at(M);
+    const Sections<law> at(M);
     for (int j = 0; j < S; ++j) {
       p[j] = p0;
       for (int k = 0; k < S; ++k)
@@ -213,7 +213,8 @@ struct Linearization {
       set_zero(m_s[j]);
       add_cross(m_s[j], load(st[j].n), tau[j]);
       add_cross(m_s[j], -1.0 * load(st[j].tau), n[j]);
-      if (M.rotary) add_product(m_s[j], 1.0, load_matrix(st[j].torque_phi), phi[j]);
+      if constexpr (!is_plain(law))
+        if (M.rotary) add_product(m_s[j], 1.0, load_matrix(st[j].torque_phi), phi[j]);
     }
   }
 
@@ -226,7 +227,7 @@ struct Linearization {
   }
 
   void laws(const CellModel& M, const CellStage* st) {
-    const Sections at(M);
+    const Sections<law> at(M);
     for (int j = 0; j < S; ++j) {
       const M3 R = load_matrix(st[j].R);
       // (5)
@@ -281,7 +282,7 @@ struct Linearization {
 
   void end(const CellModel& M, const CellStage* st, const NodeState& end_node, double* Y,
            double* dU) {
-    const Sections at(M);
+    const Sections<law> at(M);
     for (int i = 0; i < kLifted; ++i)
       for (int c = 0; c < NC; ++c)
         dU[i * NC + c] = -law_rows[i][kLifted + c];
@@ -349,6 +350,14 @@ const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kKirchhoff>[stages - 1];
     case CellLaw::kExtensibleStatic:
       return kKernels<CellLaw::kExtensibleStatic>[stages - 1];
+    case CellLaw::kExtensible:
+      return kKernels<CellLaw::kExtensible>[stages - 1];
+#ifndef CPRSIM_BARE_KERNEL  // which tests/effects compares with
+    case CellLaw::kKirchhoffGeneral:
+      return kKernels<CellLaw::kKirchhoffGeneral>[stages - 1];
+    case CellLaw::kExtensibleGeneral:
+      return kKernels<CellLaw::kExtensibleGeneral>[stages - 1];
+#endif
 #ifdef CPRSIM_EVERY_LAW
     case CellLaw::kKirchhoffFluid:
       return kKernels<CellLaw::kKirchhoffFluid>[stages - 1];

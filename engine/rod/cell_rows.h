@@ -78,7 +78,7 @@ inline M3 softened(const double* C, const M3& K, double one) {
 // Gauss-Jordan with row pivoting on an LC × W array whose first LC columns are the matrix. Fixed
 // loops over whole rows, so that they vectorise.
 template <int LC, int W>
-bool eliminate(double (*A)[W]) {
+[[gnu::noinline]] bool eliminate(double (*A)[W]) {
   for (int k = 0; k < LC; ++k) {
     int pivot = k;
     for (int i = k + 1; i < LC; ++i)

@@ -18,6 +18,9 @@ namespace {
 /// and modes, whose cost grows with the third power of the number.
 constexpr int kLeastNodes = 8;
 
+/// The rows of a point, in place.
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 13, 1>;
+
 }  // namespace
 
 CollocationRod::CollocationRod(std::string name, const EndCondition& base, const EndCondition& tip,
@@ -333,14 +336,14 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
     if (g > 0) {
       residual_.push_back(join_rows(g));
-      add(VecX(rows_ * join_scale().cwiseProduct(residual_.back())));
+      add(PointRows(rows_ * join_scale().cwiseProduct(residual_.back())));
     }
     for (int i = 0; i < pieces_[g].points; ++i) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
       points_[j].y = value(sites_[j]);
       points_[j].y_s = derivative(sites_[j]);
       residual_.push_back(evaluate_point(model(j), points_[j], fluid_at(j), tendons_at(j)));
-      add(VecX(rows_ * point_scale(j).cwiseProduct(residual_.back())));
+      add(PointRows(rows_ * point_scale(j).cwiseProduct(residual_.back())));
     }
   }
   add(VecX(tip_.value(tip_state(), tip, loose) - tip_gap_));

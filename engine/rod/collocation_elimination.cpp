@@ -41,7 +41,7 @@ void CollocationRod::put(int row, int control, const Mat13& by_fields) {
   if (planar_axis_ < 0)
     add(J);
   else
-    add(Eigen::Matrix<double, 7, 7>(rows_ * J * increments_));
+    add(Eigen::Matrix<double, 7, 7>(Eigen::Matrix<double, 7, 13>(rows_ * J) * increments_));
 }
 
 // The joint's rows, and |q|² = 1.
@@ -124,7 +124,7 @@ void CollocationRod::assemble(const Port& base) {
   }
   row = d + 1;
   for (const Vec13& residual : residual_) {
-    const VecX values = rows_ * residual;
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 13, 1> values = rows_ * residual;
     for (int i = 0; i < width(); ++i)
       system_.dense(row++, affine()) = values[i];
   }

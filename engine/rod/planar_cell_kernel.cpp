@@ -197,6 +197,8 @@ const PlanarKernel& CPRSIM_PLANAR_KERNEL(int stages, CellLaw law) {
     case CellLaw::kExtensibleStatic:
       return kKernels<CellLaw::kExtensibleStatic>[stages - 1];
     case CellLaw::kExtensible:
+    case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
+    case CellLaw::kExtensibleGeneral:
     case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
     case CellLaw::kExtensibleFluid:
     case CellLaw::kTendons:  // not in a plane

@@ -134,6 +134,8 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   static_cast<CellSection&>(model_) = coefficients(section_);
   for (std::size_t j = 0; j < sections_.size(); ++j)
     varying_[j] = coefficients(sections_[j]);
+  alike_.assign(static_cast<std::size_t>(table_->stages), model_);
+  model_.sections = alike_.data();
   model_.rotary = options_.rotary_inertia && rates.dynamic();
   model_.c_v = rates.c_v;
   model_.c_w = rates.c_w;
@@ -143,6 +145,7 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
                          : CellLaw::kExtensible;
+  if (model_.rotary || !varying_.empty()) law_ = generalized(law_);
   if (fluid_.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
   if (tendons_) {
     law_ = CellLaw::kTendons;

@@ -247,6 +247,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   // coefficients of the current solve
   CellModel model_;
   std::vector<CellSection> varying_;  ///< of the stages, where sections vary
+  std::vector<CellSection> alike_;    ///< of one cell's stages, where they do not
   StageRates rates_;
   RodForcing forcing_;
   Immersion fluid_;

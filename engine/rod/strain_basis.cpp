@@ -235,13 +235,14 @@ void StrainRod::project_law(std::size_t e) {
   for (std::size_t f = 0; f < free_modes_.size(); ++f) {
     const auto a = static_cast<Eigen::Index>(free_modes_[f]);
     const StrainMode& mode = modes_[free_modes_[f]];
-    VecX row = (q_[e].row(a) + q_0_[e].row(a)).transpose();
+    auto row = law_residual_.segment(first_unknown(e, f), rule_.functions());
+    row = (q_[e].row(a) + q_0_[e].row(a)).transpose();
     for (Eigen::Index i = 0; i < G; ++i) {
       const std::size_t at = first + static_cast<std::size_t>(i);
       row -= compliance(mode, at) * rule_.gauss.weights[i] * mode.axis.dot(own_wrench(mode, at)) *
              rule_.phi.col(i);
     }
-    law_residual_.segment(first_unknown(e, f), rule_.functions()) = row / unit(mode);
+    row /= unit(mode);
   }
 }
 
@@ -254,7 +255,9 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
   Mat3 R = rotation_of(state);
   const Vec3 p0 = position_of(state), n0 = force_of(state), m0 = moment_of(state);
   Vec3 p_end = p0, n_end = n0, m_end = m0;
-  std::vector<Vec3> n_s(static_cast<std::size_t>(G)), m_s(n_s);
+  std::vector<Vec3>&n_s = scratch_.n_s, &m_s = scratch_.m_s;
+  n_s.resize(static_cast<std::size_t>(G));
+  m_s.resize(static_cast<std::size_t>(G));
   for (Eigen::Index i = 0; i < G; ++i) {
     R = cross_gap(e, static_cast<std::size_t>(i), R);
     point[i].R = R;

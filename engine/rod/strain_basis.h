@@ -215,7 +215,7 @@ class StrainRod final : public RodModel, private TensionedRod {
   void vary_element(std::size_t element, Rows12& y);
   void vary_gap(std::size_t element, std::size_t gap, Rows3& phi) const;
   void vary_load(std::size_t node, Rows12& y) const;
-  void vary_law(std::size_t element, const std::vector<Rows3>& n, const std::vector<Rows3>& m);
+  void vary_law(std::size_t element);
   void vary_tendons(std::size_t element);
   void sweep_columns();
   VecX state_units() const;
@@ -270,6 +270,14 @@ class StrainRod final : public RodModel, private TensionedRod {
   std::unique_ptr<RodTendons> tendons_;  ///< sections: points
   TendonBorder border_;
   VecX tension_direction_, kept_residual_;
+
+  /// What a sweep writes along one element, kept so that it need not ask for memory.
+  struct Scratch {
+    std::vector<Vec3> n_s, m_s;
+    Rows3 turn;
+    std::vector<Rows3> tau, n, m, m_rates, fluid;
+    Eigen::RowVectorXd wrench;
+  } scratch_;
 
   // linearisation: columns of x
   MatX tip_columns_, law_columns_;

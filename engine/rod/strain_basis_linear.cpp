@@ -62,14 +62,18 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
   const Eigen::Index G = rule_.points();
   const double h = length_of(e);
   const auto first = e * static_cast<std::size_t>(G);
-  std::vector<Rows3> tau(static_cast<std::size_t>(G)), n(tau), m(tau), m_s(tau);
-  Rows3 phi = y.topRows<3>();
+  std::vector<Rows3>&tau = scratch_.tau, &n = scratch_.n, &m = scratch_.m, &m_s = scratch_.m_rates,
+  &fluid = scratch_.fluid;
+  for (std::vector<Rows3>* rows : {&tau, &n, &m, &m_s, &fluid})
+    rows->resize(static_cast<std::size_t>(G));
+  Rows3& phi = scratch_.turn;
+  phi = y.topRows<3>();
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const StrainPoint& point = points_[first + i];
     vary_gap(e, i, phi);
     point_turns_[first + i] = phi;
     // d tau = phi × tau + R dv
-    tau[i] = -hat(point.tau) * phi;
+    tau[i].noalias() = -hat(point.tau) * phi;
     for (std::size_t f = 0; f < free_modes_.size(); ++f) {
       const StrainMode& mode = modes_[free_modes_[f]];
       if (mode.turns) continue;
@@ -80,40 +84,38 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
     }
   }
   vary_gap(e, tau.size(), phi);
-  const auto integral = [&](std::size_t i, const std::vector<Rows3>& rate, const double* factor,
-                            Rows3& sum) {
-    for (std::size_t j = 0; j < rate.size(); ++j)
+  const auto integral = [&](std::size_t i, const Rows3* rate, const double* factor, Rows3& sum) {
+    for (std::size_t j = 0; j < tau.size(); ++j)
       sum += ((factor ? factor[j] : 1) * h *
               rule_.integrate(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))) *
              rate[j];
   };
   for (std::size_t i = 0; i < tau.size(); ++i) {
     point_moves_[first + i] = y.middleRows<3>(3);
-    integral(i, tau, nullptr, point_moves_[first + i]);
+    integral(i, tau.data(), nullptr, point_moves_[first + i]);
   }
-  const std::vector<Rows3> p(point_moves_.begin() + static_cast<std::ptrdiff_t>(first),
-                             point_moves_.begin() + static_cast<std::ptrdiff_t>(first) + G);
-  std::vector<Rows3> fluid;
+  const Rows3* const p = &point_moves_[first];
   for (std::size_t i = 0; fluid_.acts() && i < tau.size(); ++i) {
     const FluidSection& at = *fluid_.at(first + i);
-    fluid.push_back(Eigen::Map<const RowMatrix>(at.force_p) * p[i] +
-                    Eigen::Map<const RowMatrix>(at.force_phi) * point_turns_[first + i]);
+    fluid[i].noalias() = Eigen::Map<const RowMatrix>(at.force_p) * p[i];
+    fluid[i].noalias() += Eigen::Map<const RowMatrix>(at.force_phi) * point_turns_[first + i];
   }
   for (std::size_t i = 0; i < tau.size(); ++i) {
     const StrainPoint& point = points_[first + i];
     n[i] = y.middleRows<3>(6);
     if (inertia_) integral(i, p, &k_[first], n[i]);
-    if (fluid_.acts()) integral(i, fluid, nullptr, n[i]);
-    m_s[i] = hat(point.n) * tau[i] - hat(point.tau) * n[i];
+    if (fluid_.acts()) integral(i, fluid.data(), nullptr, n[i]);
+    m_s[i].noalias() = hat(point.n) * tau[i];
+    m_s[i].noalias() -= hat(point.tau) * n[i];
     if (turning_)
-      m_s[i] +=
+      m_s[i].noalias() +=
           Eigen::Map<const RowMatrix>(rotary_[first + i].torque_phi) * point_turns_[first + i];
   }
   for (std::size_t i = 0; i < tau.size(); ++i) {
     m[i] = y.middleRows<3>(9);
-    integral(i, m_s, nullptr, m[i]);
+    integral(i, m_s.data(), nullptr, m[i]);
   }
-  vary_law(e, n, m);
+  vary_law(e);
   if (tendons_) vary_tendons(e);
   y.topRows<3>() = phi;
   for (std::size_t i = 0; i < tau.size(); ++i) {
@@ -126,7 +128,9 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
 }
 
 // Variation of (4): d(R^T m) = R^T (dm + m × phi).
-void StrainRod::vary_law(std::size_t e, const std::vector<Rows3>& n, const std::vector<Rows3>& m) {
+void StrainRod::vary_law(std::size_t e) {
+  const std::vector<Rows3>&n = scratch_.n, &m = scratch_.m;
+  Eigen::RowVectorXd& Lambda = scratch_.wrench;
   const Eigen::Index G = rule_.points(), functions = rule_.functions();
   for (std::size_t f = 0; f < free_modes_.size(); ++f) {
     const StrainMode& mode = modes_[free_modes_[f]];
@@ -137,8 +141,8 @@ void StrainRod::vary_law(std::size_t e, const std::vector<Rows3>& n, const std::
       const StrainPoint& point = points_[at];
       const Vec3 axis = point.R * mode.axis, arm = (mode.turns ? point.m : point.n).cross(axis);
       // axis · (dW + W × phi) = axis · dW + (axis × W) · phi
-      const Eigen::RowVectorXd Lambda =
-          axis.transpose() * (mode.turns ? m[j] : n[j]) - arm.transpose() * point_turns_[at];
+      Lambda.noalias() = axis.transpose() * (mode.turns ? m[j] : n[j]);
+      Lambda.noalias() -= arm.transpose() * point_turns_[at];
       const double C = compliance(mode, at) * rule_.gauss.weights[i] / unit(mode);
       for (Eigen::Index k = 0; k < functions; ++k)
         rows.row(k) -= C * rule_.phi(k, i) * Lambda;
@@ -165,8 +169,8 @@ void StrainRod::vary_tendons(std::size_t e) {
         const StrainMode &row = modes_[free_modes_[f]], &column = modes_[free_modes_[g]];
         const double factor = compliance(row, at) / unit(row) * unit(column) *
                               rule_.gauss.weights[i] * six(row).dot(K * six(column));
-        law_columns_.block(first_unknown(e, f), states + first_unknown(e, g), functions,
-                           functions) += factor * rule_.phi.col(i) * rule_.phi.col(i).transpose();
+        law_columns_.block(first_unknown(e, f), states + first_unknown(e, g), functions, functions)
+            .noalias() += factor * rule_.phi.col(i) * rule_.phi.col(i).transpose();
       }
   }
 }

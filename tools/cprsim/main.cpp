@@ -23,6 +23,7 @@ constexpr std::string_view kHelp =
     R"(cprsim - simulate continuum parallel robots from an SDF-like scene file, without a desktop
 
 Examples
+  cprsim new scene.xml                      a scene to start from, all effects as comments
   cprsim scene.xml                          run it: record, film, check as the scene says
   cprsim run scene.xml --duration 1 --with shear -o try
   cprsim check scenes/robots/*.xml          only validate
@@ -43,7 +44,7 @@ Commands
   identify workspace       fit values to measurements; what a robot reaches
   sweep effects            what accuracy and what each effect costs in time
   compare plot export      a run against a reference trajectory; pictures; other formats
-  explain doctor           what a code means, what this machine can do
+  new explain doctor       a scene to start from, what a code means, what this machine can do
 
 Options
   -o, --output DIR   where results go (default out/<scene>)
@@ -77,6 +78,7 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"effects", effects_command},
                                Command{"plot", plot_command},
                                Command{"export", export_command},
+                               Command{"new", new_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};
 

@@ -34,6 +34,7 @@ struct Cell {
   CellModel model;
   std::vector<CellStage> stages;
   std::vector<FluidSection> fluid;
+  std::vector<CellSection> sections;
   NodeState start{};
   const CellKernel* kernel = nullptr;
 
@@ -56,6 +57,7 @@ struct Cell {
   NodeState evaluate() {
     NodeState end{};
     model.fluid = fluid.data();
+    model.sections = sections.data();
     kernel->evaluate(model, stages.data(), start, end);
     return end;
   }
@@ -69,7 +71,7 @@ Cell make_cell(const Case& c, unsigned seed) {
   Numbers numbers(seed);
   Cell cell;
   const ArcTableau& table = arc_tableau(c.integrator);
-  cell.kernel = &cell_kernel(table.stages, c.law);
+  cell.kernel = &cell_kernel(table.stages, c.rotary ? generalized(c.law) : c.law);
   CellModel& M = cell.model;
   M.table = &table;
   M.h = 0.4;
@@ -95,6 +97,7 @@ Cell make_cell(const Case& c, unsigned seed) {
     put(s.v, Vec3::UnitZ() + 0.2 * numbers.vec3());
     Eigen::Map<RowMat3>{s.R_start} = R * exp_so3(0.5 * numbers.vec3());
   }
+  cell.sections.assign(cell.stages.size(), M);
   cell.fluid.assign(immersed(c.law) ? cell.stages.size() : 0, FluidSection{});
   for (FluidSection& f : cell.fluid) {
     f.normal = 0.4;
@@ -185,7 +188,8 @@ std::vector<Case> cases() {
       for (bool rotary : {false, true})
         for (bool inertia : {false, true})
           for (bool body_rates : {false, true}) {
-            if (law == CellLaw::kExtensibleStatic && inertia) continue;  // valid while k = 0
+            // valid while k = 0, and nothing turns
+            if (law == CellLaw::kExtensibleStatic && (inertia || rotary)) continue;
             if (!rotary && body_rates) continue;
             all.push_back({integrator, law, rotary, inertia, body_rates});
           }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an absent effect costs in a section of a rod: cells by the kernel as it is beside cells by
+// one that was compiled without the laws of rotary inertia, varying sections, fluids and tendons.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/effects/callgrind.h"
+#include "tests/tools/scratch_folder.h"
+
+namespace cprsim {
+namespace {
+
+struct Measured {
+  std::string name, bytes;
+  long shipped = 0, bare = 0;
+};
+
+std::vector<Measured> measured_kernels() {
+  const ScratchFolder folder;
+  std::string output;
+  const std::vector<long> counts =
+      instructions_of_calls("'" CPRSIM_BINARY_DIR "/bin/cprsim_section_costs' kernels",
+                            "measured_cell", folder.path(), output);
+  std::istringstream lines(output);
+  std::vector<Measured> all;
+  std::size_t call = 0;
+  for (std::string line; std::getline(lines, line) && call < counts.size(); ++call) {
+    std::istringstream words(line);
+    Measured one;
+    std::string kernel;
+    std::getline(std::getline(std::getline(words, one.name, ';'), kernel, ';'), one.bytes);
+    if (kernel == "shipped") all.push_back(one);
+    (kernel == "shipped" ? all.back().shipped : all.back().bare) = counts[call];
+  }
+  return all;
+}
+
+TEST(PlainKernel, ExecutesNotAThousandthMoreThanOneWithoutAnyEffect) {
+  if (!has_callgrind()) GTEST_SKIP() << kNoCallgrind;
+  const std::vector<Measured> all = measured_kernels();
+  ASSERT_EQ(all.size(), 8u);
+  for (const Measured& at : all) {
+    EXPECT_EQ(at.bytes, "same") << at.name;
+    EXPECT_GT(at.bare, 1000) << at.name;
+    EXPECT_LE(static_cast<double>(at.shipped), 1.001 * static_cast<double>(at.bare))
+        << at.name << ": " << at.shipped << " instructions, " << at.bare << " without any effect";
+  }
+}
+
+TEST(PlainKernel, CountsTheSameInstructionsAgain) {
+  if (!has_callgrind()) GTEST_SKIP() << kNoCallgrind;
+  const std::vector<Measured> once = measured_kernels(), again = measured_kernels();
+  ASSERT_EQ(once.size(), again.size());
+  for (std::size_t i = 0; i < once.size(); ++i)
+    EXPECT_EQ(once[i].shipped, again[i].shipped) << once[i].name;
+}
+
+}  // namespace
+}  // namespace cprsim

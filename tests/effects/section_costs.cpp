@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The work that sections of rods take, for valgrind to count instructions in and for a clock:
+//
+//   cprsim_section_costs kernels   cells by the kernel as it is, and by one without any effect
+//   cprsim_section_costs cases     a line METHOD;EFFECT for every rod that is measured
+//   cprsim_section_costs METHOD EFFECT [timed]   residual and linearisation of that rod
+//
+// One line per measurement, in the order of the calls of measured_cell() and measured_sweep().
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+
+#include "engine/rod/cell.h"
+#include "tests/effects/costed_rods.h"
+
+namespace cprsim {
+
+const CellKernel& cell_kernel_bare(int stages, CellLaw law);
+#ifdef __x86_64__
+const CellKernel& cell_kernel_avx2(int stages, CellLaw law);
+#else
+const CellKernel& cell_kernel_baseline(int stages, CellLaw law);
+#endif
+
+}  // namespace cprsim
+
+/// valgrind counts inside these two only.
+extern "C" {
+[[gnu::noinline]] void measured_cell(const cprsim::CellKernel& kernel, cprsim::CellModel& model,
+                                     cprsim::CellStage* stages, const cprsim::NodeState& start,
+                                     cprsim::NodeState& end, double* Y, double* dU) {
+  kernel.evaluate(model, stages, start, end);
+  kernel.linearize_narrow(model, stages, start, end, Y, dU);
+}
+
+[[gnu::noinline]] void measured_sweep(cprsim::RodModel& rod, const cprsim::Port& base,
+                                      const cprsim::Port& tip, cprsim::CondensedRod& out) {
+  rod.evaluate(base, tip);
+  rod.linearize(base, tip, out);
+}
+}
+
+namespace cprsim {
+namespace {
+
+constexpr int kColumns = 12 * kNarrow;
+
+/// What a cell is given and what it finds, for a comparison of bytes.
+struct CellRun {
+  std::vector<CellStage> stages;
+  NodeState start{}, end{};
+  double Y[kColumns] = {}, dU[kMaxLifted * kNarrow] = {};
+};
+
+CellRun run_cell(const CellKernel& kernel, ArcIntegrator integrator, bool inertia) {
+  CellRun run;
+  const ArcTableau& table = arc_tableau(integrator);
+  CellModel model;
+  model.table = &table;
+  model.h = 0.04;
+  for (int i = 0; i < 3; ++i) {
+    model.C_bt[i] = 6 + i;
+    model.C_se[i] = 1e-6;
+    run.start.R[4 * i] = 1;
+    run.start.n[i] = 0.3 * i - 0.2;
+    run.start.m[i] = 0.1 - 0.04 * i;
+  }
+  model.k = inertia ? 2500 : 0;
+  const std::vector<CellSection> sections(static_cast<std::size_t>(table.stages), model);
+  model.sections = sections.data();
+  for (int j = 0; j < table.stages; ++j) {
+    CellStage stage{};
+    stage.v0[2] = stage.v[2] = 1;
+    stage.b[2] = 0.25;
+    for (int i = 0; i < 3; ++i)
+      stage.w[i] = 0.5 * i + 0.1 * j;
+    run.stages.push_back(stage);
+  }
+  for (int c = 0; c < kColumns; ++c)
+    run.Y[c] = 0.01 * c - 0.3;
+  measured_cell(kernel, model, run.stages.data(), run.start, run.end, run.Y, run.dU);
+  return run;
+}
+
+bool same_bytes(const CellRun& a, const CellRun& b) {
+  return std::memcmp(a.stages.data(), b.stages.data(), a.stages.size() * sizeof(CellStage)) == 0 &&
+         std::memcmp(&a.end, &b.end, sizeof a.end) == 0 && std::memcmp(a.Y, b.Y, sizeof a.Y) == 0 &&
+         std::memcmp(a.dU, b.dU, sizeof a.dU) == 0;
+}
+
+/// The copy that valgrind can run: it knows no wider vectors.
+const CellKernel& shipped_kernel(int stages, CellLaw law) {
+#ifdef __x86_64__
+  return cell_kernel_avx2(stages, law);
+#else
+  return cell_kernel_baseline(stages, law);
+#endif
+}
+
+void compare_kernels() {
+  struct {
+    CellLaw law;
+    bool inertia;
+    const char* name;
+  } laws[] = {{CellLaw::kKirchhoff, false, "inextensible, at rest"},
+              {CellLaw::kKirchhoff, true, "inextensible, moving"},
+              {CellLaw::kExtensibleStatic, false, "extensible, at rest"},
+              {CellLaw::kExtensible, true, "extensible, moving"}};
+
+  for (const ArcIntegrator integrator : {ArcIntegrator::kGauss4, ArcIntegrator::kGauss6})
+    for (const auto& at : laws) {
+      const int stages = arc_tableau(integrator).stages;
+      const CellRun shipped = run_cell(shipped_kernel(stages, at.law), integrator, at.inertia),
+                    bare = run_cell(cell_kernel_bare(stages, at.law), integrator, at.inertia);
+      const char* bytes = same_bytes(shipped, bare) ? "same" : "differ";
+      std::printf("%d stages, %s;shipped;%s\n", stages, at.name, bytes);
+      std::printf("%d stages, %s;bare;%s\n", stages, at.name, bytes);
+    }
+}
+
+/// Sections that one sweep visits, and nanoseconds for each of them: the best of many sweeps.
+double nanoseconds(CostedRod& rod, long sections) {
+  using Clock = std::chrono::steady_clock;
+  CondensedRod condensed;
+  double best = 1;
+  for (int run = 0; run < 400; ++run) {
+    const Clock::time_point begin = Clock::now();
+    measured_sweep(rod.model(), rod.base(), rod.tip(), condensed);
+    const std::chrono::duration<double> spent = Clock::now() - begin;
+    best = std::min(best, spent.count());
+  }
+  return 1e9 * best / static_cast<double>(sections);
+}
+
+void sweep_rod(const RodCase& at, Method method, bool timed) {
+  CostedRod rod(at, method);
+  CondensedRod condensed;
+  // everything that is set up once is, before the sweep that counts
+  rod.model().evaluate(rod.base(), rod.tip());
+  rod.model().linearize(rod.base(), rod.tip(), condensed);
+  const long before = rod.model().section_evaluations();
+  measured_sweep(rod.model(), rod.base(), rod.tip(), condensed);
+  const long sections = rod.model().section_evaluations() - before;
+  std::printf("%ld;%d;%.1f\n", sections, rod.model().unknown_count(),
+              timed ? nanoseconds(rod, sections) : 0);
+}
+
+void sweep_rods(const std::string& method_wanted, const std::string& name, bool timed) {
+  for (const Method method : kEveryMethod)
+    for (const RodCase& at : costed_cases()) {
+      if (method_wanted == "cases")
+        std::printf("%s;%s\n", method_name(method), at.name);
+      else if (method_wanted == method_name(method) && name == at.name)
+        sweep_rod(at, method, timed);
+    }
+}
+
+}  // namespace
+}  // namespace cprsim
+
+int main(int count, char** words) {
+  const std::string what = count > 1 ? words[1] : "cases";
+  if (what == "kernels")
+    cprsim::compare_kernels();
+  else
+    cprsim::sweep_rods(what, count > 2 ? words[2] : "", count > 3);
+}
