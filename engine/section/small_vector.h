@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-// Everything short is inlined always: left to the compiler, that depends on what else a file holds,
-// and an effect compiled in would slow down those who do not ask for it (tests/effects).
+// What is inlined is not left to the compiler, whose choice depends on what else a file holds: an
+// effect compiled in would slow down those who do not ask for it (tests/effects).
 namespace {  // NOLINT: on purpose, see above
 
 struct V3 {
@@ -120,7 +120,7 @@ struct RotationCoefficients {
   double A, B, A_slope, B_slope;
 };
 
-inline RotationCoefficients rotation_coefficients(double x) {  // x = |theta|²
+[[gnu::noinline]] inline RotationCoefficients rotation_coefficients(double x) {  // x = |theta|²
   if (x < 0.25) {
     return {
         1. / 2 -

@@ -48,6 +48,15 @@ TEST(PlainKernel, ExecutesNotAThousandthMoreThanOneWithoutAnyEffect) {
   }
 }
 
+// Products and sums are fused nowhere, whatever the machine could do.
+TEST(PlainKernel, GivesTheSameBytesByEveryCopy) {
+  const ScratchFolder folder;
+  const std::string command = "'" CPRSIM_BINARY_DIR "/bin/cprsim_section_costs' copies > '" +
+                              (folder / "out.txt").string() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(contents(folder / "out.txt"), "0\n");
+}
+
 TEST(PlainKernel, CountsTheSameInstructionsAgain) {
   if (!has_callgrind()) GTEST_SKIP() << kNoCallgrind;
   const std::vector<Measured> once = measured_kernels(), again = measured_kernels();
