@@ -24,8 +24,16 @@ enum class SchemeKind {
   kGeneralizedAlpha,
   kTrBdf2,
   kEsdirk32,
-  kEsdirk43
+  kEsdirk43,
+  kIda
 };
+
+/// Whether a scheme chooses its steps by itself, unless they are given.
+inline bool adapts(SchemeKind kind) {
+  return kind == SchemeKind::kTrBdf2 || kind == SchemeKind::kEsdirk32 ||
+         kind == SchemeKind::kEsdirk43 || kind == SchemeKind::kIda;
+}
+
 enum class NonlinearAlgorithm { kLadder, kNewton, kLevenbergMarquardt };
 
 struct SolverSpec {

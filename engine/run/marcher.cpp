@@ -103,14 +103,52 @@ SolveReport Marcher::solve_stage(double time) {
   return contacts_.any() ? settle_contacts(contacts_, equations_, options_, first) : first;
 }
 
-void Marcher::finish_stage(int i) {
+void Marcher::fill_tracks() {
   for (RigidBody& body : robot_.bodies)
     body.fill_tracks(rates_);
   for (Joint& joint : robot_.joints)
     joint.fill_tracks(robot_.body_pose(joint.parent), robot_.body_pose(joint.child), rates_);
   for (RobotRod& rod : robot_.rods)
     rod.model->fill_tracks();
+}
+
+void Marcher::finish_stage(int i) {
+  fill_tracks();
   stepper_.finish_stage(i, tracks_);
+}
+
+SolveReport Marcher::solve_at(double time, const StageRates& rates) {
+  rates_ = rates;
+  h_ = time - past_.back().time;
+  start_ = past_.back().unknowns;
+  equations_.set_instant(time, true, rates_);
+  const SolveReport report = solve_stage(time);
+  if (report.converged())
+    fill_tracks();
+  else
+    equations_.set_unknowns(start_);
+  return report;
+}
+
+void Marcher::keep(double time) {
+  past_.push_back({time, equations_.unknowns()});
+  while (past_.size() > kPastKept)
+    past_.pop_front();
+}
+
+std::vector<TrackError> Marcher::track_errors() const {
+  std::vector<TrackError> errors(tracks_.size());
+  const auto count = [&](const Track& track, Eigen::Index coordinates, double unit) {
+    for (std::size_t i = 0; i < tracks_.size(); ++i)
+      if (tracks_[i] == &track) errors[i] = {coordinates, unit};
+  };
+  for (const RigidBody& body : robot_.bodies) {
+    count(body.position, 3, robot_.scale.length);
+    count(body.rotation, 3, 1);
+  }
+  for (const RobotRod& rod : robot_.rods)
+    count(*rod.model->tracks().front(), rod.model->position_coordinates(), rod.length);
+  return errors;
 }
 
 Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger) {
@@ -153,17 +191,15 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
 double Marcher::error_estimate() const {
   if (!stepper_.has_error_estimate()) return 0;
   double error = 0;
-  auto add = [&](const Track& track, Eigen::Index n, double unit) {
+  const std::vector<TrackError> errors = track_errors();
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const auto [n, unit] = errors[i];
+    if (n == 0) continue;
+    const Track& track = *tracks_[i];
     error = std::max(error, stepper_.position_error(track).head(n).cwiseAbs().maxCoeff() / unit);
     error =
         std::max(error, h_ * stepper_.velocity_error(track).head(n).cwiseAbs().maxCoeff() / unit);
-  };
-  for (const RigidBody& body : robot_.bodies) {
-    add(body.position, 3, robot_.scale.length);
-    add(body.rotation, 3, 1);
   }
-  for (const RobotRod& rod : robot_.rods)
-    add(*rod.model->tracks().front(), rod.model->position_coordinates(), rod.length);
   return error;
 }
 

@@ -10,6 +10,7 @@
 
 #include "engine/robot/equations.h"
 #include "engine/solve/newton.h"
+#include "engine/time/ida_integrator.h"
 #include "engine/time/scheme.h"
 
 namespace cprsim {
@@ -45,6 +46,20 @@ class Marcher {
   void accept();
   void reject();
 
+  /// For who has steps of his own and fills x_h, v_h of the tracks: a solve at `time`, from what
+  /// was kept before. Where it converges x of all tracks, and v of rotations, are filled.
+  SolveReport solve_at(double time, const StageRates& rates);
+  /// The state at `time` is final; later solves look back on it.
+  void keep(double time);
+
+  /// The robot returns to what was kept last.
+  void go_back() { equations_.set_unknowns(past_.back().unknowns); }
+
+  /// How much of each track counts in errors, as Robot::tracks().
+  std::vector<TrackError> track_errors() const;
+
+  const std::vector<Track*>& tracks() const { return tracks_; }
+
   void visit(Archive& archive);
 
   bool estimates_error() const { return stepper_.has_error_estimate(); }
@@ -63,6 +78,7 @@ class Marcher {
   SolveReport solve_stage(double time);
   SolveReport solve_once(double time);
   double error_estimate() const;
+  void fill_tracks();
   void finish_stage(int i);
 
   Robot& robot_;

@@ -63,6 +63,7 @@ bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
   statistics.start_seconds = seconds_since(begin);
   observe(0, statistics.start_seconds);
   before = now;
+  started = true;
   if (end <= 0) status = RunStatus::kDone;
   return near;
 }
@@ -92,6 +93,8 @@ const SolveReport& Simulation::advance() {
     p.arrive(p.t + step >= p.end * (1 - 1e-12) ? p.end : p.t + step, step, {});
   } else if (p.scene.simulation.mode == Mode::kQuasistatic) {
     p.step_quasistatic();
+  } else if (p.plan.scheme.kind == SchemeKind::kIda) {
+    p.step_by_ida();
   } else {
     p.step_dynamic();
   }
@@ -121,13 +124,15 @@ void Simulation::Parts::visit(Archive& archive) {
 }
 
 bool Simulation::has_visitable_state() const {
-  return parts_->free_bodies == nullptr && !parts_->contacts.any();
+  return parts_->free_bodies == nullptr && !parts_->contacts.any() &&
+         parts_->plan.scheme.kind != SchemeKind::kIda;
 }
 
 void Simulation::visit(Archive& archive) {
   if (!has_visitable_state())
     throw StateError(
-        "bodies in free flight or rods in contact: what contact remembers cannot be saved");
+        "bodies in free flight, rods in contact or steps by ida: what contact or ida remembers "
+        "cannot be saved");
   parts_->visit(archive);
 }
 
@@ -149,6 +154,10 @@ const std::string& Simulation::failure() const {
 
 const Robot& Simulation::robot() const {
   return parts_->robot;
+}
+
+Failure Simulation::failure_kind() const {
+  return parts_->failure_kind;
 }
 
 const SolveReport& Simulation::last_report() const {

@@ -27,6 +27,15 @@ enum class RunStatus {
   kFailed,   ///< see failure
 };
 
+/// Why a run could not go on.
+enum class Failure {
+  kNone,
+  kStart,    ///< no equilibrium or assembly to begin with
+  kOverlap,  ///< a rod begins inside something
+  kStep,     ///< a step or equilibrium was not found
+  kContact   ///< a rod would pass through something, or be thrown
+};
+
 /// Sums over a run, for run.json and the closing lines.
 struct RunStatistics {
   long steps = 0, rejected = 0, retried = 0;
@@ -112,6 +121,7 @@ class Simulation {
   /// Where the run will end: the duration, 0 for a static scene.
   double end_time() const;
   const std::string& failure() const;  ///< a sentence for people when status() is kFailed
+  Failure failure_kind() const;
   const SolveReport& last_report() const;
   const Robot& robot() const;  ///< as it now stands
   const RunStatistics& statistics() const;

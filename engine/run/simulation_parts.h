@@ -33,6 +33,8 @@ struct Simulation::Parts {
   Equations equations;
   StepPlan plan;
   Marcher marcher;
+  std::unique_ptr<IdaIntegrator> ida;  ///< if that is the scheme
+  int ida_failures = 0;                ///< in a row
   EnergyLedger ledger;
   ProblemFacts facts;
 
@@ -42,6 +44,8 @@ struct Simulation::Parts {
   int cushioned = 0;  ///< steps of backward Euler still to take after a contact changed
   std::vector<double> breaks;
   std::string failure;
+  Failure failure_kind = Failure::kNone;
+  bool started = false;
   SolveReport report;
   RunStatistics statistics;
   Snapshot now, before;
@@ -62,8 +66,15 @@ struct Simulation::Parts {
 
   bool free_only() const { return robot.rods.empty() && robot.bodies.empty(); }
 
+  void fail(Failure kind, const std::string& what) {
+    status = RunStatus::kFailed;
+    failure_kind = kind;
+    failure = what;
+  }
+
   void fail(const std::string& what) {
     status = RunStatus::kFailed;
+    failure_kind = started ? Failure::kStep : Failure::kStart;
     failure = what + ": " + to_string(report.status) + " after " +
               std::to_string(report.iterations) + " iterations, residual " +
               short_number(report.residual) + " in " + report.worst_row;
@@ -126,8 +137,7 @@ struct Simulation::Parts {
     if (!contacts.any()) return true;
     const std::string overlap = contacts.overlap();
     if (overlap.empty()) return true;
-    status = RunStatus::kFailed;
-    failure = overlap;
+    fail(Failure::kOverlap, overlap);
     return false;
   }
 
@@ -181,7 +191,10 @@ struct Simulation::Parts {
   void soften(bool touched);
   bool contacts_object(const Marcher::Outcome& outcome, double step, double& target);
   bool throws(double t_new, const Marcher::Outcome& outcome) const;
+  void settle(double t_new, double h_used, const Marcher::Outcome& outcome);
   void step_dynamic();
+  void step_by_ida();
+  void begin_ida(double stop);
   void step_quasistatic();
 
   double controlled(double step, double error) const {

@@ -18,6 +18,11 @@ constexpr double kCushion = 0.1;
 
 void Simulation::Parts::arrive(double t_new, double h_used, const Marcher::Outcome& outcome) {
   marcher.accept();
+  settle(t_new, h_used, outcome);
+}
+
+/// The robot is at t_new: everybody else follows.
+void Simulation::Parts::settle(double t_new, double h_used, const Marcher::Outcome& outcome) {
   t = t_new;
   report = outcome.report;
   count(report);
@@ -96,17 +101,17 @@ void Simulation::Parts::step_dynamic() {
     if (contacts_object(outcome, step, target)) {
       failures = -1;
       if (target > 1e-12 * std::max(1.0, end)) continue;
-      failure = "a rod would pass through an obstacle at t = " + short_number(t) + " s";
-      status = RunStatus::kFailed;
+      fail(Failure::kContact,
+           "a rod would pass through an obstacle at t = " + short_number(t) + " s");
       return;
     }
     if (outcome.converged && throws(t + step, outcome)) {
       marcher.reject();
       report = outcome.report;
       if (rescued) {
-        failure = "contact would throw a rod at t = " + short_number(t) +
-                  " s: it has sunk between the points that are held, its cells are too long";
-        status = RunStatus::kFailed;
+        fail(Failure::kContact,
+             "contact would throw a rod at t = " + short_number(t) +
+                 " s: it has sunk between the points that are held, its cells are too long");
         return;
       }
       rescue(target);

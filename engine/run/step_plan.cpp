@@ -7,11 +7,6 @@
 namespace cprsim {
 namespace {
 
-bool embedded(SchemeKind kind) {
-  return kind == SchemeKind::kTrBdf2 || kind == SchemeKind::kEsdirk32 ||
-         kind == SchemeKind::kEsdirk43;
-}
-
 double longest_rod(const Scene& scene) {
   double length = 0;
   for (const RodSpec& rod : scene.rods)
@@ -36,7 +31,7 @@ StepPlan plan_steps(const Scene& scene) {
   plan.scheme.kind = spec.scheme.value_or(scheme_for(scene));
   plan.scheme.alpha = spec.alpha.value_or(-0.4);
   plan.scheme.rho_inf = spec.rho_inf.value_or(0.8);
-  plan.adaptive = embedded(plan.scheme.kind) && !spec.step;
+  plan.adaptive = adapts(plan.scheme.kind) && !spec.step;
   plan.step = spec.step.value_or(scene.max_step_size);
   if (!plan.adaptive) return plan;
   plan.tolerance = spec.tolerance.value_or(1e-5);

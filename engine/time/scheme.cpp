@@ -213,6 +213,8 @@ const char* to_string(SchemeKind kind) {
       return "tr_bdf2";
     case SchemeKind::kEsdirk43:
       return "esdirk43";
+    case SchemeKind::kIda:
+      return "ida";
     case SchemeKind::kEsdirk32:
       break;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "engine/model/flight.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/values.h"
 #include "scenes/loader/weigh.h"
@@ -320,6 +321,28 @@ void check_space(Reading& r) {
   belongs(solver.elements.has_value(), "elements", {Method::kStrain, Method::kCollocation});
 }
 
+// Multistep formulas look back over many steps: nothing may come and go, stick and slip.
+void check_ida(Reading& r) {
+  const Scene& scene = r.scene;
+  if (scene.solver.scheme != SchemeKind::kIda || scene.simulation.mode != Mode::kDynamic) return;
+  std::string why;
+  if (!scene.rods.empty() &&
+      (scene.effects.has(Effect::kContact) || scene.effects.has(Effect::kSelfContact)))
+    why = "contact";
+  const std::vector<char> flying = flying_bodies(scene);
+  if (std::find(flying.begin(), flying.end(), 1) != flying.end()) why = "bodies in free flight";
+  for (const JointSpec& joint : scene.joints)
+    for (int i = 0; i < freedom_count(joint.kind); ++i)
+      if (axis_of(joint, i).friction > 0) why = "dry friction of joint '" + joint.name + "'";
+  if (why.empty()) return;
+  r.report
+      .at(Severity::kError, "E520", scene.solver.place, 14,
+          "ida integrates smooth motion only: the scene has " + why)
+      .suggestion =
+      "available: backward_euler, bdf2, bdf_alpha, generalized_alpha, tr_bdf2, "
+      "esdirk32, esdirk43";
+}
+
 }  // namespace
 
 void check_physics(Reading& r) {
@@ -331,6 +354,7 @@ void check_physics(Reading& r) {
   check_reach(r);
   check_drives(r);
   check_space(r);
+  check_ida(r);
 }
 
 }  // namespace cprsim

@@ -83,7 +83,8 @@ constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwar
                                          {"generalized_alpha", SchemeKind::kGeneralizedAlpha},
                                          {"tr_bdf2", SchemeKind::kTrBdf2},
                                          {"esdirk32", SchemeKind::kEsdirk32},
-                                         {"esdirk43", SchemeKind::kEsdirk43}};
+                                         {"esdirk43", SchemeKind::kEsdirk43},
+                                         {"ida", SchemeKind::kIda}};
 
 void read_space(Reading& r, const Node& node) {
   SolverSpec& solver = r.scene.solver;
@@ -133,10 +134,10 @@ void read_time(Reading& r, const Node& node) {
   solver.rho_inf = optional_number(node, "rho_inf");
   solver.step = optional_number(node, "step");
   solver.tolerance = optional_number(node, "tolerance");
-  const bool adapts = solver.scheme == SchemeKind::kTrBdf2 ||
-                      solver.scheme == SchemeKind::kEsdirk32 ||
-                      solver.scheme == SchemeKind::kEsdirk43;
-  if (solver.tolerance && solver.scheme && !adapts)
+  if (solver.step && solver.scheme == SchemeKind::kIda)
+    r.report.bad_value("E310", node, *node.attribute("step"),
+                       "ida chooses its steps: give tolerance");
+  if (solver.tolerance && solver.scheme && !adapts(*solver.scheme))
     r.report.bad_value("E310", node, *node.attribute("tolerance"),
                        std::string(node.value("scheme")) + " takes fixed steps: give step");
   if (solver.step && solver.tolerance)

@@ -34,10 +34,11 @@ const std::vector<Layer>& layers() {
   static const std::vector<std::string> section = join(model, {"engine/time/"});
   static const std::vector<std::string> rod = join(section, {"engine/section/"});
   static const std::vector<std::string> sundials{"cvode/", "kinsol/", "nvector/", "sun"};
+  static const std::vector<std::string> sundials_ida{"ida/", "nvector/", "sundials/"};
   static const std::vector<Layer> all{
       {"engine/math/", {}, {}},
       {"engine/model/", {"engine/math/"}, {}},
-      {"engine/time/", model, {}},
+      {"engine/time/", model, sundials_ida},
       {"engine/section/", section, {}},
       {"engine/rod/", rod, sundials},
       {"engine/solve/", {"engine/math/"}, sundials},

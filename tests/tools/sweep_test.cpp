@@ -176,6 +176,21 @@ TEST_F(Sweep, EffectsTellsWhatEachChangesAndCosts) {
   EXPECT_TRUE(exists("out/released_rod_effects/effects.csv"));
 }
 
+TEST_F(Sweep, IdaIsAReferenceOfItsOwn) {
+  const std::string words =
+      "sweep " + released_ + "--vary scheme=esdirk43 --vary tolerance=1e-4,1e-6 --repeat 1 -q ";
+  ASSERT_EQ(run(words + "-o ours").code, 0);
+  ASSERT_EQ(run(words + "--reference ida -o ida").code, 0);
+  const Json ours = json("ours/sweep.json"), ida = json("ida/sweep.json");
+  EXPECT_NE(ida["reference"].get<std::string>().find("scheme=ida"), std::string::npos);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double error = ours["runs"][i]["errors"][0];
+    EXPECT_NEAR(ida["runs"][i]["errors"][0].get<double>(), error, 0.02 * error) << i;
+  }
+  EXPECT_EQ(run("sweep " + shipped("scenes/robots/csg_published.xml") + " --reference ida").code,
+            2);
+}
+
 TEST_F(Sweep, PlotDrawsRecordingsAndScenes) {
   ASSERT_EQ(run("run " + released_ + "--no-video -o r -q").code, 0);
   for (const char* words :

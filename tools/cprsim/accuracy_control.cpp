@@ -29,10 +29,8 @@ std::vector<std::pair<int, int>> resolution_of(const Scene& scene) {
 
 /// Steps of this scheme are what the scene says, whatever the error.
 bool takes_fixed_steps(const Scene& scene) {
-  const auto scheme = scene.solver.scheme.value_or(SchemeKind::kEsdirk32);
-  const bool adapts = scheme == SchemeKind::kTrBdf2 || scheme == SchemeKind::kEsdirk32 ||
-                      scheme == SchemeKind::kEsdirk43;
-  return scene.simulation.mode == Mode::kDynamic && (scene.solver.step || !adapts);
+  return scene.simulation.mode == Mode::kDynamic &&
+         (scene.solver.step || !adapts(scene.solver.scheme.value_or(SchemeKind::kEsdirk32)));
 }
 
 /// The same with everything ten times looser, what the scene fixes included.

@@ -22,11 +22,8 @@ constexpr double kSmoothStep = 1e-4;
 // Steps that adapt do so in jumps, each of which moves the answer by about the tolerance.
 constexpr double kAdaptiveStep = 1e-3;
 
-bool adapts(const Scene& scene) {
-  const SchemeKind kind = scene.solver.scheme.value_or(SchemeKind::kEsdirk32);
-  const bool embedded =
-      kind == SchemeKind::kTrBdf2 || kind == SchemeKind::kEsdirk32 || kind == SchemeKind::kEsdirk43;
-  return embedded && !scene.solver.step;
+bool adapts_steps(const Scene& scene) {
+  return adapts(scene.solver.scheme.value_or(SchemeKind::kEsdirk32)) && !scene.solver.step;
 }
 
 }  // namespace
@@ -43,7 +40,7 @@ SceneFit::SceneFit(const Study& study)
   }
   if (study.dynamic()) {
     const auto scene = scene_at(start(), study.rows.front());
-    if (scene && adapts(*scene)) step_ = kAdaptiveStep;
+    if (scene && adapts_steps(*scene)) step_ = kAdaptiveStep;
   }
 }
 

@@ -78,9 +78,9 @@ std::variant<SweepOptions, int> parse_sweep_options(const Words& words) {
                throw UsageError("'" + word + "' is none of max, rms, final");
              options.norm = word;
            });
-  line.text(
-      "--reference", options.reference, "WHICH",
-      "tight (default), none, settings like points=48,tolerance=1e-9, or a CSV, HDF5 or TUM file");
+  line.text("--reference", options.reference, "WHICH",
+            "tight (default), ida, none, settings like points=48,tolerance=1e-9, or a CSV, HDF5, "
+            "TUM file");
   line.text("--sweep", options.sweep, "NAME",
             "Which <cprsim:sweep> of the scene; all: none of them, but all schemes and methods");
   line.flag("--quick", options.quick, "Without --vary: fewer settings");

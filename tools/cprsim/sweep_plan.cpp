@@ -137,7 +137,8 @@ Settings settings_of(const std::string& text) {
 }
 
 /// A solution that is tight in space and time, and one that is less so.
-std::pair<Settings, Settings> tight_settings(const SweepPlan& plan, const SweepOptions& options) {
+std::pair<Settings, Settings> tight_settings(const SweepPlan& plan, const SweepOptions& options,
+                                             const char* scheme) {
   double tolerance = 1e-6;
   int points = 6;
   for (const SweepPoint& point : plan.points)
@@ -156,9 +157,9 @@ std::pair<Settings, Settings> tight_settings(const SweepPlan& plan, const SweepO
   loose[2].second = std::to_string(points / 2);
   if (plan.dynamic) {
     tight.insert(tight.end(),
-                 {{"scheme", "esdirk43"}, {"tolerance", fmt::format("{:.0e}", tolerance)}});
+                 {{"scheme", scheme}, {"tolerance", fmt::format("{:.0e}", tolerance)}});
     loose.insert(loose.end(),
-                 {{"scheme", "esdirk43"}, {"tolerance", fmt::format("{:.0e}", 10 * tolerance)}});
+                 {{"scheme", scheme}, {"tolerance", fmt::format("{:.0e}", 10 * tolerance)}});
   }
   return {tight, loose};
 }
@@ -175,14 +176,17 @@ void add_references(const SweepOptions& options, const SweepSpec* spec, SweepPla
     return;
   }
   Settings tight, loose;
-  if (!options.reference.empty() && options.reference != "tight") {
+  if (options.reference == "ida") {
+    if (!plan.dynamic) throw UsageError("--reference ida is for motions: nothing moves here");
+    std::tie(tight, loose) = tight_settings(plan, options, "ida");
+  } else if (!options.reference.empty() && options.reference != "tight") {
     plan.reference_kind = ReferenceKind::kSettings;
     tight = settings_of(options.reference);
   } else if (spec != nullptr && spec->reference) {
     plan.reference_kind = ReferenceKind::kSettings;
     tight = {{spec->vary.front().path, *spec->reference}};
   } else {
-    std::tie(tight, loose) = tight_settings(plan, options);
+    std::tie(tight, loose) = tight_settings(plan, options, "esdirk43");
   }
   for (SweepPoint& point : plan.points) {
     Settings own;
@@ -242,10 +246,10 @@ std::vector<std::vector<SweepAxis>> default_grids(const Scene& scene, bool quick
                       {"backward_euler", "bdf2", "bdf_alpha", "generalized_alpha", "tr_bdf2",
                        "esdirk32", "esdirk43"}},
                      {"step", steps}});
-  grids.push_back({shooting,
-                   points,
-                   {"scheme", {"tr_bdf2", "esdirk32", "esdirk43"}},
-                   {"tolerance", tolerances}});
+  Values adaptive{"tr_bdf2", "esdirk32", "esdirk43"};
+  if (!scene.effects.has(Effect::kContact) && !scene.effects.has(Effect::kSelfContact))
+    adaptive.emplace_back("ida");
+  grids.push_back({shooting, points, {"scheme", adaptive}, {"tolerance", tolerances}});
   grids.push_back({{"method", {"strain"}},
                    {"order", pick({"4", "6"}, {"6"})},
                    {"scheme", {"esdirk43"}},
