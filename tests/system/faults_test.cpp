@@ -89,7 +89,7 @@ TEST_F(Faults, EarlierResultsStayWhenNothingCanBeWritten) {
   for (const char* fault : {"open:1:30:on", "write:1:28:on", "write:1:5:on", "fsync:1:5:on"}) {
     const Outcome outcome = run_with_fault(fault, "swing.xml -o out --duration 0.02");
     EXPECT_EQ(outcome.code, 5) << fault;
-    EXPECT_TRUE(has(outcome.err, "cprsim: error: cannot ")) << outcome.err;
+    EXPECT_TRUE(has(outcome.err, "cprsim: error[E701]: cannot ")) << outcome.err;
     EXPECT_EQ(contents(folder_ / "out/swing.csv"), csv) << fault;
     EXPECT_EQ(contents(folder_ / "out/run.json"), report) << fault;
   }

@@ -60,7 +60,15 @@ void Console::error(const std::string& text) const {
   print("error", "1;31", text);
 }
 
-void Console::print(const char* word, const char* hue, const std::string& text) const {
+void Console::warn(const char* code, const std::string& text) const {
+  if (options_.quiet < 2) print(fmt::format("warning[{}]", code), "1;35", text);
+}
+
+void Console::error(const char* code, const std::string& text) const {
+  print(fmt::format("error[{}]", code), "1;31", text);
+}
+
+void Console::print(const std::string& word, const char* hue, const std::string& text) const {
   if (color_) {
     write_to_stderr(fmt::format("cprsim: \033[{}m{}:\033[0m {}\n", hue, word, text));
   } else {

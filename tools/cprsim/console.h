@@ -33,6 +33,9 @@ class Console {
   /// On standard error, unless -qq.
   void warn(const std::string& text) const;
   void error(const std::string& text) const;
+  /// The same with a code that `cprsim explain` knows.
+  void warn(const char* code, const std::string& text) const;
+  void error(const char* code, const std::string& text) const;
   /// What the loader found, in the chosen format: notes with -v, warnings unless -qq.
   void show(const std::vector<Diagnostic>& diagnostics) const;
 
@@ -44,7 +47,7 @@ class Console {
   ProgressStyle progress() const { return progress_; }
 
  private:
-  void print(const char* word, const char* hue, const std::string& text) const;
+  void print(const std::string& word, const char* hue, const std::string& text) const;
 
   ConsoleOptions options_;
   ProgressStyle progress_;

@@ -151,6 +151,9 @@ int main(int count, char** arguments) {
   watch_signals();
   try {
     return start(Words(arguments + std::min(count, 1), arguments + count));
+  } catch (const OutputError& error) {
+    write_to_stderr(fmt::format("cprsim: error[{}]: {}\n", error.code(), error.what()));
+    return kExitEnvironment;
   } catch (const std::runtime_error& error) {
     write_to_stderr(fmt::format("cprsim: error: {}\n", error.what()));
     return kExitEnvironment;

@@ -35,7 +35,8 @@ std::vector<std::string> files_of_earlier_run(const fs::path& path, const std::s
   std::ifstream stream(path);
   const nlohmann::json report = nlohmann::json::parse(stream, nullptr, false);
   if (!report.is_object() || report.value("schema", "").rfind(schema, 0) != 0) {
-    throw OutputError(path.string() + " was not written by cprsim; choose another folder with -o");
+    throw OutputError(path.string() + " was not written by cprsim; choose another folder with -o",
+                      "E702");
   }
   std::vector<std::string> names;
   for (const nlohmann::json& file : report.value("files", nlohmann::json::array())) {
@@ -97,8 +98,9 @@ OutputFolder::OutputFolder(fs::path path, ReportFile report, bool keep)
     if (!keep) remove_earlier_run();
   } else if (!holds_only_parts(path_)) {
     throw OutputError(path_.string() + " holds files but no " + report_.name +
-                      ", so cprsim did not write them and leaves them "
-                      "alone; choose another folder with -o");
+                          ", so cprsim did not write them and leaves them "
+                          "alone; choose another folder with -o",
+                      "E702");
   }
 }
 
@@ -114,7 +116,8 @@ void OutputFolder::Lock::take(const fs::path& folder) {
   // file systems without locks are used without one
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   throw OutputError("another run is writing to " + folder.string() +
-                    "; wait for it or choose another folder with -o");
+                        "; wait for it or choose another folder with -o",
+                    "E702");
 }
 
 void OutputFolder::remove_earlier_run() const {

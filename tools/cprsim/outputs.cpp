@@ -30,6 +30,12 @@ std::string report_name(const fs::path& file, const fs::path& folder) {
 
 }  // namespace
 
+// What cannot be drawn is no OutputError.
+OutputComplaint::OutputComplaint(const std::runtime_error& error) : text(error.what()) {
+  const auto* const output = dynamic_cast<const OutputError*>(&error);
+  code = output != nullptr ? output->code() : "E704";
+}
+
 Outputs::Outputs(const Scene& scene, const RunOptions& options, const fs::path& folder,
                  const Console& console)
     : folder_(folder), expectations_(scene) {
@@ -72,7 +78,7 @@ void Outputs::add_films(const Scene& scene, const RunOptions& options, const Con
       add_film(scene, videos_[i], file, replaced, console);
     } catch (const std::runtime_error& error) {
       if (replaced) throw;
-      console.warn("no film " + file.string() + ": " + error.what());
+      console.warn("W701", "no film " + file.string() + ": " + error.what());
     }
   }
 }
@@ -92,18 +98,20 @@ void Outputs::add_film(const Scene& scene, const VideoSpec& video, const fs::pat
   auto sink = std::make_unique<FrameSink>(scene, video, frames, report_name(frames, folder_));
   drawn_by_ = sink->device();
   sinks_.push_back(std::move(sink));
-  console.warn(why_not + "; writing the frames of " + file.string() +
-               " instead, to be encoded by\n  " + encode_command(video, frames, file));
+  console.warn("W701", why_not + "; writing the frames of " + file.string() +
+                           " instead, to be encoded by\n  " + encode_command(video, frames, file));
 }
 
 fs::path Outputs::claim(const std::string& name) {
   const fs::path path(name);
   const bool leaves = path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end();
   if (name.empty() || leaves) {
-    throw OutputError("the scene names the file '" + name + "', which is not in the output folder");
+    throw OutputError("the scene names the file '" + name + "', which is not in the output folder",
+                      "E703");
   }
   if (std::find(claimed_.begin(), claimed_.end(), name) != claimed_.end()) {
-    throw OutputError("the scene writes " + name + " twice; give its recordings other prefixes");
+    throw OutputError("the scene writes " + name + " twice; give its recordings other prefixes",
+                      "E703");
   }
   claimed_.push_back(name);
   std::error_code error;
@@ -152,9 +160,9 @@ void Outputs::step(const Snapshot& before, const Snapshot& now) {
   seconds_ += watch.seconds();
 }
 
-std::string Outputs::finish() {
+OutputComplaint Outputs::finish() {
   const Stopwatch watch;
-  std::string complaint;
+  OutputComplaint complaint;
   std::vector<std::unique_ptr<Sink>> finished;
   for (auto& sink : sinks_) {
     try {
@@ -162,7 +170,7 @@ std::string Outputs::finish() {
       sink->finish();
       finished.push_back(std::move(sink));
     } catch (const std::runtime_error& error) {
-      if (complaint.empty()) complaint = error.what();
+      if (complaint.text.empty()) complaint = OutputComplaint(error);
     }
   }
   sinks_ = std::move(finished);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,15 @@
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
+
+/// What disk, pipe or graphics have to say.
+struct OutputComplaint {
+  OutputComplaint() = default;
+  explicit OutputComplaint(const std::runtime_error& error);
+
+  std::string text;  ///< empty: nothing
+  const char* code = "";
+};
 
 class Outputs {
  public:
@@ -32,8 +42,8 @@ class Outputs {
   /// the state are others
   void visit(Archive& archive);
   void step(const Snapshot& before, const Snapshot& now);
-  /// Completes every file that can be completed. @return the first complaint, or an empty string
-  std::string finish();
+  /// Completes every file that can be completed. @return the first complaint
+  OutputComplaint finish();
 
   /// From here on the clock, unless it is null, measures where the time goes.
   void measure(PhaseClock* clock) { clock_ = clock; }

@@ -47,10 +47,12 @@ struct Run {
 bool must_stop(Run& run) {
   if (stop_signal() != 0) {
     run.report.end = RunEnd::kInterrupted;
+    run.report.failure_code = "E606";
     run.report.failure =
         fmt::format("interrupted by {}", stop_signal() == SIGINT ? "SIGINT" : "SIGTERM");
   } else if (run.options.max_wall && run.watch.seconds() > *run.options.max_wall) {
     run.report.end = RunEnd::kWallTime;
+    run.report.failure_code = "E605";
     run.report.failure = fmt::format("--max-wall {} is used up", *run.options.max_wall);
   }
   return run.report.end != RunEnd::kRunning;
@@ -87,17 +89,33 @@ void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& st
 
 /// The same, with whatever disk, pipe or graphics have to complain about.
 void simulate_or_complain(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& states) {
-  std::string complaint;
+  OutputComplaint complaint;
   try {
     simulate(run, simulation, outputs, states);
   } catch (const std::runtime_error& error) {
-    complaint = error.what();
+    complaint = OutputComplaint(error);
   }
-  const std::string later = outputs.finish();
-  if (complaint.empty()) complaint = later;
-  if (complaint.empty()) return;
+  const OutputComplaint later = outputs.finish();
+  if (complaint.text.empty()) complaint = later;
+  if (complaint.text.empty()) return;
   run.report.end = RunEnd::kOutput;
-  run.report.failure = complaint;
+  run.report.failure = complaint.text;
+  run.report.failure_code = complaint.code;
+}
+
+const char* code_of(Failure kind) {
+  switch (kind) {
+    case Failure::kStart:
+      return "E601";
+    case Failure::kOverlap:
+      return "E602";
+    case Failure::kContact:
+      return "E604";
+    case Failure::kNone:
+    case Failure::kStep:
+      break;
+  }
+  return "E603";
 }
 
 int exit_code_of(const Run& run) {
@@ -143,6 +161,7 @@ void conclude(Run& run, const Simulation& simulation, const Outputs& outputs,
   if (simulation.status() == RunStatus::kFailed && report.end == RunEnd::kRunning) {
     report.end = RunEnd::kFailed;
     report.failure = simulation.failure();
+    report.failure_code = code_of(simulation.failure_kind());
     const bool started = report.statistics.steps > 0 || report.time > 0;
     report.likely_causes =
         likely_causes(run.scene, report.facts, report.last_solve, report.time, started);
@@ -167,14 +186,15 @@ void show(const Run& run) {
     run.console.say(to_summary(run.scene, report, run.folder.string()));
     run.console.say(profile_table(report));
     if (report.unstable_directions > 0)
-      run.console.warn(fmt::format(
-          "the equilibrium is unstable in {} direction{}: the robot would not stay there; `cprsim "
-          "path` and `cprsim solve` tell more",
-          report.unstable_directions, report.unstable_directions == 1 ? "" : "s"));
-    if (report.exit_code != kExitDone) run.console.error("not all expectations are met");
+      run.console.warn("W603", fmt::format("the equilibrium is unstable in {} direction{}: the "
+                                           "robot would not stay there; `cprsim "
+                                           "path` and `cprsim solve` tell more",
+                                           report.unstable_directions,
+                                           report.unstable_directions == 1 ? "" : "s"));
+    if (report.exit_code != kExitDone) run.console.error("E607", "not all expectations are met");
     return;
   }
-  run.console.error(explain_failure(report, run.folder.string()));
+  run.console.error(report.failure_code, explain_failure(report, run.folder.string()));
 }
 
 void finish_profile(Run& run, Simulation& simulation) {
@@ -192,6 +212,7 @@ void warn_of_imbalance(const Run& run) {
   const double balance = run.report.extremes.relative_balance().value_or(0);
   if (run.scene.simulation.mode == Mode::kDynamic && balance > kOpen)
     run.console.warn(
+        "W602",
         fmt::format("{:.0f} % of the energy that moved is not accounted for: steps or rods are too "
                     "coarse for this motion, or the scheme damps it",
                     100 * balance));
@@ -219,6 +240,7 @@ void run_scene(Run& run, Simulation& simulation) {
   } catch (const std::runtime_error& error) {
     run.report.end = RunEnd::kOutput;
     run.report.failure = error.what();
+    run.report.failure_code = OutputComplaint(error).code;
     run.report.exit_code = kExitEnvironment;
   }
 }
@@ -238,7 +260,7 @@ int run_in_real_time(Run& run) {
   run_scene(run, *simulation);
   run.write_report();
   show(run);
-  if (!run.report.real_time->kept_up()) run.console.warn(describe(*run.report.real_time));
+  if (!run.report.real_time->kept_up()) run.console.warn("W604", describe(*run.report.real_time));
   warn_of_imbalance(run);
   return run.report.exit_code;
 }
@@ -264,7 +286,7 @@ int run_to_accuracy(Run& run) {
   run.write_report();
   show(run);
   if (run.report.accuracy && !run.report.accuracy->reached())
-    run.console.warn(describe(*run.report.accuracy));
+    run.console.warn("W601", describe(*run.report.accuracy));
   warn_of_imbalance(run);
   return run.report.exit_code;
 }

@@ -129,8 +129,10 @@ Json energy_json(const Extremes& extremes) {
 }
 
 Json failure_json(const RunReport& report) {
-  Json failure = {
-      {"reason", to_string(report.end)}, {"message", report.failure}, {"time", report.time}};
+  Json failure = {{"code", report.failure_code},
+                  {"reason", to_string(report.end)},
+                  {"message", report.failure},
+                  {"time", report.time}};
   if (report.end != RunEnd::kFailed) return failure;
   const SolveReport& solve = report.last_solve;
   failure["solve"] = {{"status", to_string(solve.status)}, {"stage", to_string(solve.stage)},

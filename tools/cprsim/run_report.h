@@ -48,6 +48,7 @@ struct RunReport {
   RunStatistics statistics;
   ProblemFacts facts;
   std::string failure;  ///< a sentence, if end is not kDone
+  const char* failure_code = "";
   SolveReport last_solve;
   std::vector<std::string> likely_causes;
   Extremes extremes;

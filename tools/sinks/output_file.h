@@ -12,7 +12,14 @@ namespace cprsim {
 /// A full disk, a closed pipe, a folder that may not be written: exit code 5.
 class OutputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit OutputError(const std::string& what, const char* code = "E701")
+      : std::runtime_error(what), code_(code) {}
+
+  /// As `cprsim explain` knows it.
+  const char* code() const { return code_; }
+
+ private:
+  const char* code_;
 };
 
 class OutputFile {
