@@ -98,6 +98,26 @@ TEST_F(Cprsim, HelpFitsAScreenAndStartsWithExamples) {
   }
 }
 
+TEST_F(Cprsim, CompletesCommandsAndTheirOptionsInAShell) {
+  const auto completed = [&](const std::string& words, int at) {
+    spill(folder_ / "complete.sh", run("completion bash").out + "COMP_WORDS=(" + words +
+                                       ")\nCOMP_CWORD=" + std::to_string(at) +
+                                       "\n_cprsim\necho \"${COMPREPLY[@]}\"\n");
+    const std::string command = "cd '" + folder_.path().string() +
+                                "' && PATH='" CPRSIM_BINARY_DIR
+                                "/bin':$PATH bash complete.sh >words.txt 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return contents(folder_ / "words.txt");
+  };
+  EXPECT_EQ(completed("cprsim swe", 1), "sweep\n");
+  EXPECT_EQ(completed("cprsim sw", 1), "swing.xml sweep\n");
+  EXPECT_EQ(completed("cprsim sweep --no", 2), "--norm\n");
+  EXPECT_EQ(completed("cprsim swing.xml --real", 2), "--real-time-factor\n");
+  for (const char* shell : {"zsh", "fish"})
+    EXPECT_TRUE(has(run(std::string("completion ") + shell).out, "cprsim completion options"));
+  EXPECT_EQ(run("completion csh").code, 2);
+}
+
 TEST_F(Cprsim, SuggestsCommandsAndOptionsAndAnswersTwo) {
   const Outcome command = run("rnu");
   EXPECT_EQ(command.code, 2);

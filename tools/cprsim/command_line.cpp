@@ -154,6 +154,10 @@ void CommandLine::exclude(const std::string& name, const std::string& other) {
 
 std::optional<int> CommandLine::parse(const Words& words) {
   CLI::App& app = parser_->app;
+  if (words == Words{kListOptions}) {
+    write_to_stdout(fmt::format("{}\n", fmt::join(option_names(app), " ")));
+    return kExitDone;
+  }
   app.allow_extras();
   try {
     app.parse(Words(words.rbegin(), words.rend()));

@@ -23,6 +23,9 @@ using Words = std::vector<std::string>;
 
 /// What a command understands: its options are declared, then its words parsed into them. Wraps
 /// CLI11, which takes seconds to compile in every file that sees it.
+/// A command that is started with this word alone names its options; for `cprsim completion`.
+constexpr const char* kListOptions = "--list-options";
+
 class CommandLine {
  public:
   CommandLine(const std::string& name, const std::string& about);

@@ -23,6 +23,9 @@ int new_command(const Words& words);       ///< a scene to start from
 int explain_command(const Words& words);   ///< the meaning of a code
 int doctor_command(const Words& words);    ///< what this machine can do
 
+/// What completes words in bash, zsh or fish; empty for another shell.
+std::string shell_script(const std::string& shell);
+
 /// What a robot reaches, of that what is stable and within limits.
 int workspace_command(const Words& words);
 

@@ -45,6 +45,7 @@ Commands
   sweep effects            what accuracy and what each effect costs in time
   compare plot export      a run against a reference trajectory; pictures; other formats
   new explain doctor       a scene to start from, what a code means, what this machine can do
+  completion               words completed by bash, zsh or fish
 
 Options
   -o, --output DIR   where results go (default out/<scene>)
@@ -100,6 +101,26 @@ std::size_t first_word(const Words& words) {
   return i;
 }
 
+/// cprsim completion SHELL, and what the scripts ask for.
+int complete(const Words& words) {
+  const std::string what = words.size() > 1 ? words[1] : "";
+  std::string text = shell_script(what);
+  if (what == "commands")
+    for (const Command& c : kCommands)
+      text += std::string(text.empty() ? "" : " ") + c.name;
+  if (what == "options" && words.size() == 3) {
+    const auto command = std::find_if(kCommands.begin(), kCommands.end(),
+                                      [&](const Command& c) { return words[2] == c.name; });
+    if (command != kCommands.end()) return command->start({kListOptions});
+  }
+  if (text.empty()) {
+    write_to_stderr("cprsim completion: for which shell? bash, zsh or fish\n");
+    return kExitUsage;
+  }
+  write_to_stdout(text + (text.back() == '\n' ? "" : "\n"));
+  return kExitDone;
+}
+
 int start(const Words& words) {
   if (words.empty()) {
     write_to_stderr(kHelp);
@@ -114,6 +135,7 @@ int start(const Words& words) {
         fmt::format("cprsim {} ({}, {})\n", version().number, version().revision, version().build));
     return kExitDone;
   }
+  if (words[0] == "completion") return complete(words);
   const std::size_t first = first_word(words);
   const auto command = std::find_if(kCommands.begin(), kCommands.end(), [&](const Command& c) {
     return first < words.size() && words[first] == c.name;
