@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,13 @@ struct DriveSpec {
   Profile profile;
 };
 
-/// A force and torque at a point of a body, or of a rod at s = rod_s · length, times profile(t)
-/// (constant 1 if the scene gives no time function).
+/// A force and torque at a point of a body, or of a rod at s = rod_s · length, or per length on a
+/// part of a rod; times profile(t) (constant 1 if the scene gives no time function).
 struct LoadSpec {
   Place place;
   int rod = -1;  ///< index into Scene::rods, or -1: acts on `at`
   double rod_s = 0;
+  std::optional<double> to;  ///< spread evenly from rod_s to here; force N/m, torque N
   FrameRef at;
   bool follower = false;  ///< components in the axes of `at` or of the section instead of the world
   Mat3 R_expressed = Mat3::Identity();  ///< non-follower: axes of expressed_in at t = 0 in the

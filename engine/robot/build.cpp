@@ -154,6 +154,7 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.rotary_inertia = has(Effect::kRotaryInertia);
   plan.damping = has(Effect::kDamping) && rod.spec->damping.has_value();
   plan.drag = rod.section.fluid.resists();
+  plan.line_loads = !rod.line_loads.empty();
   for (const LoadSpec* load : rod.loads)
     plan.stations.push_back(load->rod_s);
   plan.stations.insert(plan.stations.end(), rod.breaks.begin(), rod.breaks.end());
@@ -180,6 +181,18 @@ void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
   }
 }
 
+// What is not smooth along the rod is a station of it.
+void add_line_loads(RobotRod& rod) {
+  if (rod.line_loads.empty()) return;
+  if (!rod.tendons.empty() || rod.length_drive)
+    throw std::invalid_argument("rod '" + rod.spec->name +
+                                "' has a load along it, and tendons or a length drive, too");
+  for (const LoadSpec* load : rod.line_loads)
+    for (const double s : {load->rod_s, *load->to})
+      if (s > 0 && s < 1 && std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
+        rod.breaks.push_back(s);
+}
+
 void add_rods(Robot& robot) {
   const Scene& scene = *robot.scene;
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
@@ -197,8 +210,9 @@ void add_rods(Robot& robot) {
     for (const DriveSpec& drive : scene.drives)
       if (drive.rod == static_cast<int>(i)) rod.length_drive = &drive.profile;
     for (const LoadSpec& load : scene.loads)
-      if (load.rod == static_cast<int>(i)) rod.loads.push_back(&load);
+      if (load.rod == static_cast<int>(i)) (load.to ? rod.line_loads : rod.loads).push_back(&load);
     add_tendons(scene, i, rod);
+    add_line_loads(rod);
     rod.gravity = spec.gravity && !spec.lacks("gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);
@@ -284,30 +298,6 @@ RobotScale choose_scale(const Robot& robot) {
 }
 
 }  // namespace
-
-PointLoad load_at(const LoadSpec& load, double t, bool before) {
-  const double f = load.has_profile ? load.profile.evaluate(t, before).value : 1.0;
-  return {load.rod_s, f * (load.R_expressed * load.force), f * (load.R_expressed * load.torque),
-          load.follower};
-}
-
-TendonPull pull_at(const RobotTendon& tendon, double t, bool before) {
-  if (!tendon.drive) return {};
-  return {tendon.drive->profile.evaluate(t, before).value,
-          tendon.drive->quantity == DriveQuantity::kDisplacement};
-}
-
-void pull_tendons(RobotRod& rod, double t, bool before, double share) {
-  for (double s : rod.breaks) {
-    rod.forcing.loads.emplace_back();
-    rod.forcing.loads.back().s = s;
-  }
-  rod.forcing.tendons.clear();
-  for (const RobotTendon& tendon : rod.tendons) {
-    rod.forcing.tendons.push_back(pull_at(tendon, t, before));
-    rod.forcing.tendons.back().value *= share;
-  }
-}
 
 Robot build_robot(const Scene& scene) {
   Robot robot;

@@ -51,7 +51,14 @@ void Equations::prepare_rods() {
     forcing.loads.clear();
     for (const LoadSpec* load : rod.loads)
       forcing.loads.push_back(scaled_load(*load));
-    if (!rod.tendons.empty()) pull_tendons(rod, t_, before_, acting());
+    forcing.lines.clear();
+    for (const LoadSpec* load : rod.line_loads) {
+      LineLoad line = line_load_at(*load, t_, before_);
+      line.force *= acting();
+      line.torque *= acting();
+      forcing.lines.push_back(line);
+    }
+    if (!rod.breaks.empty() || !rod.tendons.empty()) pull_tendons(rod, t_, before_, acting());
     forcing.tolerance = tolerance_;
     forcing.axial_softness = softness_;
     forcing.relaxation = drag_ * rod.section.K_bt.head<2>().maxCoeff() / std::pow(rod.length, 4);

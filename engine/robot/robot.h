@@ -45,9 +45,10 @@ struct RobotRod {
   bool base_held = true, tip_held = false;
   double length = 0;
   const Profile* length_drive = nullptr;
-  std::vector<const LoadSpec*> loads;
+  std::vector<const LoadSpec*> loads;       ///< at points
+  std::vector<const LoadSpec*> line_loads;  ///< spread along it
   std::vector<RobotTendon> tendons;
-  std::vector<double> breaks;  ///< s / L of the tendons' breaks: stations without a load
+  std::vector<double> breaks;  ///< s / L of breaks of tendons and line loads: no load acts there
   bool gravity = true;
   RodForcing forcing;  ///< at the current instant
 };
@@ -110,6 +111,9 @@ struct Robot {
 /// A load at time t: world axes, or those of its section or frame if it follows. `before`: left
 /// limit at a jump.
 PointLoad load_at(const LoadSpec& load, double t, bool before);
+
+/// The same of a load that is spread along a rod.
+LineLoad line_load_at(const LoadSpec& load, double t, bool before);
 
 /// What a tendon's motor prescribes at time t; a tendon without one is slack.
 TendonPull pull_at(const RobotTendon& tendon, double t, bool before);

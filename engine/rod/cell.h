@@ -33,7 +33,7 @@ enum class CellLaw {
   kExtensible,         ///< stage v lifted
   kKirchhoffGeneral,   ///< kKirchhoff; sections may vary and have rotary inertia, t of (4)
   kExtensibleGeneral,  ///< kExtensible, likewise
-  kKirchhoffFluid,     ///< v = v0 and a fluid's force in (3): engine/section/fluid.h
+  kKirchhoffFluid,     ///< v = v0; a fluid's force in (3), loads along the rod in (3), (4)
   kExtensibleFluid,    ///< stage v lifted, likewise
   kTendons             ///< stage v lifted, and tendons are part of the law
 };
@@ -83,6 +83,7 @@ struct CellModel : CellSection {
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
   FluidSection* fluid = nullptr;     ///< of the cell's stages, for the laws of a fluid
+  bool loaded = false;               ///< whether these have loads along the rod, too
   TendonSection* tendons = nullptr;  ///< of the cell's stages; only read with kTendons
 };
 

@@ -4,7 +4,7 @@
 // independent and contraction is off, so all copies give the same bits.
 #include "engine/rod/cell.h"
 #include "engine/rod/cell_rows.h"
-#include "engine/section/fluid.h"
+#include "engine/section/line_load.h"
 #include "engine/section/rotary.h"
 #include "engine/section/small_vector.h"
 #include "engine/section/tendon_law.h"
@@ -32,10 +32,6 @@ struct RotaryModel {
   double c_v, c_w;
   bool body_rates;
 };
-
-[[maybe_unused]] inline V3 third_column(const double* R) {
-  return {R[2], R[5], R[8]};
-}
 
 // Nonlinear evaluation: (1)-(4) explicitly in the order the law allows, then the residuals (5),
 // (6).
@@ -90,7 +86,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
     store(st[j].p, p);
     n_s[j] = at[j].k * p + load(st[j].b);
     if constexpr (immersed(law)) {
-      evaluate_fluid(M.c_v, M.c_w, p, third_column(st[j].R), M.fluid[j]);
+      evaluate_surroundings(M.c_v, M.c_w, p, load_matrix(st[j].R), M.fluid[j]);
       n_s[j] = n_s[j] + load(M.fluid[j].force);
     }
   }
@@ -101,6 +97,8 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
       n = n + (h * T.a[j][k]) * n_s[k];
     store(st[j].n, n);
     m_s[j] = cross(n, tau[j]);
+    if constexpr (immersed(law))
+      if (M.loaded) m_s[j] = m_s[j] + load(M.fluid[j].moment);
     if constexpr (!is_plain(law))
       if (M.rotary) {
         evaluate_rotary(RotaryModel{at[j].rhoJ, M.c_v, M.c_w, M.body_rates}, st[j]);
@@ -213,6 +211,8 @@ struct Linearization {
       set_zero(m_s[j]);
       add_cross(m_s[j], load(st[j].n), tau[j]);
       add_cross(m_s[j], -1.0 * load(st[j].tau), n[j]);
+      if constexpr (immersed(law))
+        if (M.loaded) add_product(m_s[j], 1.0, load_matrix(M.fluid[j].moment_phi), phi[j]);
       if constexpr (!is_plain(law))
         if (M.rotary) add_product(m_s[j], 1.0, load_matrix(st[j].torque_phi), phi[j]);
     }

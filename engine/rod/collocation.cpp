@@ -33,7 +33,8 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   choose_space(plane, X_WBase.R);
   place_sites(arc_grid(options.elements, options.stations, options.along.get()));
   if (options_.along) list_sections();
-  if (options.drag) fluid_ = Immersion(points_.size());
+  if (options.drag || options.line_loads) fluid_ = Immersion(points_.size());
+  if (options.line_loads) place_lines();
   const auto n = static_cast<Eigen::Index>(points_.size());
   const Eigen::Index strains = options.damping ? n * (extensible_ ? 2 : 1) : 0;
   track_.resize(position_coordinates() + 3 * strains);
@@ -200,6 +201,18 @@ void CollocationRod::set_coefficients(const SectionProperties& section, PointMod
   model.c_v = rates_.c_v;
   model.c_w = rates_.c_w;
   model.body_rates = rates_.body_rates;
+}
+
+void CollocationRod::place_lines() {
+  std::vector<double> inside;
+  for (const Piece& piece : pieces_) {
+    const auto first = static_cast<std::size_t>(piece.first_point),
+               last = first + static_cast<std::size_t>(piece.points) - 1;
+    for (std::size_t j = first; j <= last; ++j)
+      inside.push_back(j == first || j == last ? 0.5 * (sites_[first].s + sites_[last].s)
+                                               : sites_[j].s);
+  }
+  fluid_.place(std::move(inside));
 }
 
 void CollocationRod::list_sections() {

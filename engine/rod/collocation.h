@@ -47,6 +47,7 @@ struct CollocationOptions {
   int degree = kDefaultDegree, elements = 4;  ///< elements: at least; all point loads are at knots
   bool extension = false, shear = false;      ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
+  bool line_loads = false;                     ///< whether there are loads spread along it
   std::vector<double> stations;                ///< s of point loads
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
@@ -160,6 +161,7 @@ class CollocationRod final : public RodModel, private TensionedRod {
   Vec3 compliance_se(const SectionProperties& section) const;
   void set_coefficients(const SectionProperties& section, PointModel& model) const;
   void list_sections();
+  void place_lines();
 
   const SectionProperties& section(std::size_t point) const {
     return sections_.empty() ? section_ : sections_[point];

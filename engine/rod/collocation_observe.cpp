@@ -141,7 +141,8 @@ RodEnergy CollocationRod::energy() const {
     }
     e.elastic += weight * elastic(own, point.u, point.v);
     e.gravity -= weight * own.weighing_mass() * forcing_.gravity.dot(point.p());
-    if (options_.drag) fluid_.add_power(j, point.R.col(2), weight, track_, e);
+    if (options_.drag || options_.line_loads)
+      fluid_.add_power(j, point.R.col(2), weight, track_, e);
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strain);
     e.damping_power += weight * u_t.dot(own.B_bt.cwiseProduct(u_t));

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/math/so3.h"
-#include "engine/section/fluid.h"
+#include "engine/section/line_load.h"
 #include "engine/section/rotary.h"
 #include "engine/section/tendon_law.h"
 
@@ -91,11 +91,13 @@ Vec13 evaluate_point(const PointModel& model, CollocationPoint& point, FluidSect
   r.segment<3>(kP) = p_s - point.R * point.v;                                   // (3)
   r.segment<3>(kN) = point.y_s.segment<3>(kN) - model.k * point.p() - point.b;  // (4)
   if (fluid) {
-    evaluate_fluid(model.c_v, model.c_w, load(point.y.data() + kP), load(point.R.col(2).data()),
-                   *fluid);
+    const RowMatrix R = point.R;
+    evaluate_surroundings(model.c_v, model.c_w, load(point.y.data() + kP), load_matrix(R.data()),
+                          *fluid);
     r.segment<3>(kN) -= Eigen::Map<const Vec3>(fluid->force);
   }
   r.segment<3>(kM) = point.y_s.segment<3>(kM) + p_s.cross(point.n());  // (5)
+  if (fluid && fluid->loaded != 0) r.segment<3>(kM) -= Eigen::Map<const Vec3>(fluid->moment);
   if (model.rotary) {
     Eigen::Map<RowMatrix>(point.spin.R) = point.R;
     evaluate_rotary(model, point.spin);
@@ -158,6 +160,8 @@ void linearize_point(const PointModel& model, const CollocationPoint& point, Mat
   }
   if (model.rotary)
     by_y.block<3, 4>(kM, kQ) = -Eigen::Map<const RowMatrix>(point.spin.torque_phi) * G;
+  if (fluid && fluid->loaded != 0)
+    by_y.block<3, 4>(kM, kQ) -= Eigen::Map<const RowMatrix>(fluid->moment_phi) * G;
 }
 
 }  // namespace cprsim

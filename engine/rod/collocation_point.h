@@ -7,7 +7,8 @@
 //   p_s = R v,  v = v0 + C_se R^T n              (3)   shear and stretch law
 //   n_s = k p + b + g                            (4)
 //   m_s = -p_s × n + t(R)                        (5)
-// where g is a fluid's force (engine/section/fluid.h). With tendons n and m are those of rod and
+// where g is a fluid's force (engine/section/fluid.h); loads along the rod stand in (4), (5) as
+// engine/section/line_load.h says. With tendons n and m are those of rod and
 // tendons together; in (2), (3) the rod's own part is less Lambda_m(u, v), Lambda_n(u, v) of
 // engine/section/tendon_law.h, there with v = R^T p_s. No row divides by a stiffness; a rigid mode
 // is a zero of C_bt, C_se. Everything but (1) is unchanged by q -> a q, and a constant left factor

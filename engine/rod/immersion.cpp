@@ -13,6 +13,11 @@ void Immersion::prepare(const SectionProperties& section, const std::vector<Sect
   rates_ = rates;
   wind_ = forcing.wind;
   acts_ = rates.dynamic() || !wind_.isZero(0);
+  loaded_ = !inside_.empty() && !forcing.lines.empty();
+  if (loaded_) {
+    acts_ = true;
+    take_loads(forcing.lines);
+  }
   for (std::size_t j = 0; j < places_.size(); ++j) {
     FluidSection& place = places_[j];
     const FluidProperties& fluid = own.empty() ? section.fluid : own[j].fluid;
@@ -27,6 +32,22 @@ void Immersion::prepare(const SectionProperties& section, const std::vector<Sect
     }
     Eigen::Map<Vec3>(place.velocity_h) = v_h;
     Eigen::Map<Vec3>(place.acceleration_h) = a_h;
+  }
+}
+
+void Immersion::take_loads(const std::vector<LineLoad>& lines) {
+  for (std::size_t j = 0; j < places_.size(); ++j) {
+    FluidSection& place = places_[j];
+    place.loaded = 1;
+    Eigen::Map<Vec3> dead_force(place.dead_force), dead_moment(place.dead_moment),
+        own_force(place.own_force), own_moment(place.own_moment);
+    for (Eigen::Map<Vec3>* sum : {&dead_force, &dead_moment, &own_force, &own_moment})
+      sum->setZero();
+    for (const LineLoad& line : lines) {
+      if (inside_[j] < line.from || inside_[j] > line.to) continue;
+      (line.follower ? own_force : dead_force) += line.force;
+      (line.follower ? own_moment : dead_moment) += line.torque;
+    }
   }
 }
 
@@ -51,6 +72,7 @@ void Immersion::add_power(std::size_t place, const Vec3& axis, double weight,
   const Vec3 v_n = v - along * axis;
   const Vec3 drag = -at.normal * v_n.norm() * v_n - at.tangential * std::abs(along) * along * axis;
   energy.damping_power -= weight * drag.dot(v);
+  if (loaded_) energy.fluid_power += weight * Eigen::Map<const Vec3>(at.applied).dot(p_t);
   energy.fluid_power +=
       weight * (drag.dot(wind_) - at.added_mass * (a - a.dot(axis) * axis).dot(p_t));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A fluid's force along a rod, for every method: the places where the rod's balance holds, in the
-// order of its track of positions (engine/section/fluid.h).
+// What lies around a rod, for every method: a fluid's force and loads that are spread along it, at
+// the places where the rod's balance holds, in the order of its track of positions
+// (engine/section/fluid.h, engine/section/line_load.h).
 #pragma once
 
 #include <vector>
@@ -13,16 +14,23 @@ namespace cprsim {
 
 class Immersion {
  public:
-  /// @param count places, one after the other at the front of the track; 0: no fluid.
+  /// @param count places, one after the other at the front of the track; 0: nothing around it.
   explicit Immersion(std::size_t count) : places_(count) {}
+
+  /// Where the places are, for loads along the rod; a fraction of the length in the interior of the
+  /// piece of the grid to which a place belongs.
+  void place(std::vector<double> inside) { inside_ = std::move(inside); }
 
   /// Inputs of a solve.
   /// @param own of each place, or empty: all are like `section`.
   void prepare(const SectionProperties& section, const std::vector<SectionProperties>& own,
                const StageRates& rates, const RodForcing& forcing, const Track& positions);
 
-  /// Whether a force acts in the present solve: something moves, the rod or the fluid.
+  /// Whether a force acts in the present solve: something moves, the rod or the fluid, or there are
+  /// loads along the rod.
   bool acts() const { return acts_; }
+
+  bool loaded() const { return loaded_; }
 
   FluidSection* at(std::size_t place) { return &places_[place]; }
 
@@ -40,10 +48,13 @@ class Immersion {
   void visit(Archive& archive) { archive.doubles(places_); }
 
  private:
+  void take_loads(const std::vector<LineLoad>& lines);
+
   std::vector<FluidSection> places_;
+  std::vector<double> inside_;
   Vec3 wind_ = Vec3::Zero();
   StageRates rates_;
-  bool acts_ = false;
+  bool acts_ = false, loaded_ = false;
 };
 
 }  // namespace cprsim

@@ -22,6 +22,7 @@ ShootingOptions shooting_options(const RodPlan& plan) {
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
   o.drag = plan.drag;
+  o.line_loads = plan.line_loads;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.along = plan.along;
@@ -51,6 +52,9 @@ Pose section_frame(const RodPlan& plan) {
 std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   if (plan.plane) {
+    if (plan.line_loads)
+      throw std::invalid_argument("shooting in a plane knows no load along rod '" + spec.name +
+                                  "'");
     return std::make_unique<PlanarRod>(spec.name, hold_of(plan, spec.base, plan.X_WBase),
                                        hold_of(plan, spec.tip, plan.X_WTip), *plan.plane,
                                        plan.X_WBase, spin_frame(plan), plan.section, plan.length,
@@ -72,6 +76,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
   o.drag = plan.drag;
+  o.line_loads = plan.line_loads;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.along = plan.along;
@@ -94,6 +99,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.rotary_inertia = plan.rotary_inertia;
   o.damping = plan.damping;
   o.drag = plan.drag;
+  o.line_loads = plan.line_loads;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.along = plan.along;

@@ -27,7 +27,8 @@ struct RodPlan {
   double length = 0;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  std::vector<double> stations;  ///< s / L of point loads, then of breaks of tendons
+  bool line_loads = false;       ///< whether there are loads spread along it
+  std::vector<double> stations;  ///< s / L of point loads, then of breaks of tendons and lines
   std::vector<Tendon> tendons;
   const SolverSpec* solver = nullptr;  ///< resolution, accuracy
 };

@@ -47,6 +47,13 @@ struct PointLoad {
   bool follower = false;
 };
 
+/// Spread evenly over a part of the rod, per length: world axes or (follower) section axes.
+struct LineLoad {
+  double from = 0, to = 1;  ///< fractions of the length; nodes of the grid are there
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< N/m, N
+  bool follower = false;
+};
+
 /// What a tendon's motor prescribes: a tension (N), or how much it has pulled in (m).
 struct TendonPull {
   double value = 0;
@@ -59,6 +66,7 @@ struct RodForcing {
   Vec3 gravity = Vec3::Zero();      ///< m/s²
   Vec3 wind = Vec3::Zero();         ///< m/s; read by a rod that has drag
   std::vector<PointLoad> loads;     ///< in the order and at the s given at construction
+  std::vector<LineLoad> lines;      ///< read by a rod that was made for some
   std::vector<TendonPull> tendons;  ///< in the order given at construction
   double relaxation = 0;  ///< N s/m² over the pseudo time step: drag towards the marked positions
   double axial_softness =

@@ -34,7 +34,9 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
       options_(options),
       table_(&arc_tableau(options.integrator)),
       grid_(arc_grid(options.cells, options.stations, options.along.get())),
-      fluid_(options.drag ? (grid_.size() - 1) * static_cast<std::size_t>(table_->stages) : 0) {
+      fluid_(options.drag || options.line_loads
+                 ? (grid_.size() - 1) * static_cast<std::size_t>(table_->stages)
+                 : 0) {
   cells_ = static_cast<int>(grid_.size()) - 1;
   extensible_ = options.extension || options.shear;
   const auto n = static_cast<std::size_t>(cells_ * table_->stages);
@@ -49,6 +51,14 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
   if (options_.rotary_inertia) rotation_track_.resize(3 * static_cast<Eigen::Index>(n));
   reference_rotations_.assign(9 * n, 0);
   forcing_.length = length;
+  if (options_.line_loads) {
+    std::vector<double> inside;
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t cell = j / static_cast<std::size_t>(table_->stages);
+      inside.push_back(0.5 * (grid_[cell] + grid_[cell + 1]));
+    }
+    fluid_.place(std::move(inside));
+  }
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
   set_unloaded(Pose{});
@@ -141,6 +151,7 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   model_.c_w = rates.c_w;
   model_.body_rates = rates.body_rates;
   fluid_.prepare(section_, sections_, rates, forcing_, track_);
+  model_.loaded = fluid_.loaded();
   const bool stretches = extensible_ || forcing.axial_softness > 0;
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic

@@ -38,6 +38,7 @@ struct ShootingOptions {
   int cells = 10;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
+  bool line_loads = false;                     ///< whether there are loads spread along it
   std::vector<double> stations;                ///< s of point loads: grid nodes are placed there
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary

@@ -334,7 +334,7 @@ RodEnergy ShootingRod::energy() const {
     e.elastic += weight * 0.5 *
                  (bent.dot(own.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
     e.gravity -= weight * own.weighing_mass() * forcing_.gravity.dot(vec(stage.p));
-    if (options_.drag)
+    if (options_.drag || options_.line_loads)
       fluid_.add_power(j, Eigen::Map<const RowMatrix>(stage.R).col(2), weight, track_, e);
     if (!options_.damping) continue;
     const Vec3 u_t = track_.v.segment<3>(strains + i);

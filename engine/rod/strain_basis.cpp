@@ -11,7 +11,7 @@
 #include "engine/rod/arc_grid.h"
 #include "engine/rod/magnus.h"
 #include "engine/rod/shooting.h"
-#include "engine/section/fluid.h"
+#include "engine/section/line_load.h"
 #include "engine/section/rotary.h"
 
 namespace cprsim {
@@ -36,7 +36,9 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
       options_(options),
       rule_(options.order, options.order + kExtraPoints),
       grid_(arc_grid(options.elements, options.stations, options.along.get())),
-      fluid_(options.drag ? (grid_.size() - 1) * static_cast<std::size_t>(rule_.points()) : 0) {
+      fluid_(options.drag || options.line_loads
+                 ? (grid_.size() - 1) * static_cast<std::size_t>(rule_.points())
+                 : 0) {
   list_modes(X_WBase.R);
   load_at_ = nodes_at(grid_, options_.stations);
   const auto functions = rule_.functions();
@@ -56,6 +58,14 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   for (VecX* gap : {&tip_gap_, &base_gap_, &tip_gap_start_, &base_gap_start_})
     gap->setZero(space_.freedoms());
   forcing_.length = length;
+  if (options_.line_loads) {
+    std::vector<double> inside;
+    for (std::size_t j = 0; j < points; ++j) {
+      const std::size_t e = j / static_cast<std::size_t>(rule_.points());
+      inside.push_back(0.5 * (grid_[e] + grid_[e + 1]));
+    }
+    fluid_.place(std::move(inside));
+  }
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
   set_unloaded(X_WBase);
@@ -210,8 +220,9 @@ void StrainRod::evaluate_rotary_inertia(std::size_t point) {
 
 Vec3 StrainRod::fluid_force(std::size_t point) {
   const StrainPoint& at = points_[point];
-  evaluate_fluid(rates_.c_v, rates_.c_w, load(at.p.data()), load(at.R.col(2).data()),
-                 *fluid_.at(point));
+  const RowMatrix R = at.R;
+  evaluate_surroundings(rates_.c_v, rates_.c_w, load(at.p.data()), load_matrix(R.data()),
+                        *fluid_.at(point));
   return Eigen::Map<const Vec3>(fluid_.at(point)->force);
 }
 
@@ -284,6 +295,7 @@ void StrainRod::evaluate_element(std::size_t e, NodeState& state) {
     const std::size_t k = static_cast<std::size_t>(i), at = e * static_cast<std::size_t>(G) + k;
     point[i].n = n0 + integral(i, [&](Eigen::Index j) { return n_s[static_cast<std::size_t>(j)]; });
     m_s[k] = point[i].n.cross(point[i].tau);
+    if (fluid_.loaded()) m_s[k] += Eigen::Map<const Vec3>(fluid_.at(at)->moment);
     if (turning_) {
       evaluate_rotary_inertia(at);
       m_s[k] += Eigen::Map<const Vec3>(rotary_[at].torque);

@@ -46,6 +46,7 @@ struct StrainOptions {
   int elements = 1;  ///< at least; point loads cut further
   bool extension = false, shear = false;
   bool rotary_inertia = false, damping = false, drag = false;
+  bool line_loads = false;                     ///< whether there are loads spread along it
   std::vector<double> stations;                ///< s / L of point loads
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary

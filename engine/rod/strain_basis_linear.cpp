@@ -107,6 +107,9 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
     if (fluid_.acts()) integral(i, fluid.data(), nullptr, n[i]);
     m_s[i].noalias() = hat(point.n) * tau[i];
     m_s[i].noalias() -= hat(point.tau) * n[i];
+    if (fluid_.loaded())
+      m_s[i].noalias() +=
+          Eigen::Map<const RowMatrix>(fluid_.at(first + i)->moment_phi) * point_turns_[first + i];
     if (turning_)
       m_s[i].noalias() +=
           Eigen::Map<const RowMatrix>(rotary_[first + i].torque_phi) * point_turns_[first + i];

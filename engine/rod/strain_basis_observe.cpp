@@ -321,7 +321,8 @@ RodEnergy StrainRod::energy() const {
     energy.kinetic += weight * 0.5 * section(j).rhoA *
                       track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)).squaredNorm();
     energy.gravity -= weight * section(j).weighing_mass() * forcing_.gravity.dot(points_[j].p);
-    if (options_.drag) fluid_.add_power(j, points_[j].R.col(2), weight, track_, energy);
+    if (options_.drag || options_.line_loads)
+      fluid_.add_power(j, points_[j].R.col(2), weight, track_, energy);
     if (rotary_.empty()) continue;
     const Vec3 omega = vec(rotary_[j].omega);
     energy.kinetic += weight * 0.5 * omega.dot(section(j).rhoJ.cwiseProduct(omega));

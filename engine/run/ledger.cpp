@@ -17,6 +17,7 @@ void EnergyLedger::collect(double t, bool before) {
     points_.push_back({axes * at.force, axes * at.torque, X.p, X.R});
   }
   for (const RobotRod& rod : robot_.rods) {
+    collect_torques(rod, t, before);
     if (rod.loads.empty()) continue;
     const RodSample sample = rod.model->observe();
     for (const LoadSpec* load : rod.loads) {
@@ -30,12 +31,32 @@ void EnergyLedger::collect(double t, bool before) {
   }
 }
 
+// Of loads along the rod; the power of their forces is the rod's (RodEnergy::fluid_power).
+void EnergyLedger::collect_torques(const RobotRod& rod, double t, bool before) {
+  for (const LoadSpec* load : rod.line_loads) {
+    const LineLoad line = line_load_at(*load, t, before);
+    if (line.torque.isZero(0)) continue;
+    const RodSample sample = rod.model->observe();
+    for (std::size_t k = 0; k + 1 < sample.points.size(); ++k) {
+      const RodPoint &a = sample.points[k], &b = sample.points[k + 1];
+      const double middle = 0.5 * (a.s + b.s);
+      if (middle < line.from || middle > line.to) continue;
+      for (const RodPoint* point : {&a, &b}) {
+        const Mat3 axes = line.follower ? point->rotation : Mat3(Mat3::Identity());
+        const Vec3 torque = 0.5 * (b.s - a.s) * rod.length * (axes * line.torque);
+        points_.push_back({Vec3::Zero(), torque, point->position, point->rotation});
+      }
+    }
+  }
+}
+
 double EnergyLedger::drive_power(double t, bool before) const {
   double power = 0;
   for (const RobotRod& rod : robot_.rods) {
     if (rod.length_drive)
       power += rod.model->energy().feed_power * rod.length_drive->evaluate(t, before).rate;
-    if (rod.section.fluid.resists()) power += rod.model->energy().fluid_power;
+    if (rod.section.fluid.resists() || !rod.line_loads.empty())
+      power += rod.model->energy().fluid_power;
   }
   for (const JointDrive& drive : robot_.joint_drives) {
     const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];

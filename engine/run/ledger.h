@@ -51,6 +51,7 @@ class EnergyLedger {
   };
 
   void collect(double t, bool before);
+  void collect_torques(const RobotRod& rod, double t, bool before);
   double friction_energy() const;
   void sum_up();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A section in a fluid; equations in engine/section/fluid.h.
+// What lies around a section of a rod: a fluid (equations in engine/section/fluid.h) and loads that
+// are spread along the rod (engine/section/line_load.h).
 #pragma once
 
 namespace cprsim {
@@ -11,6 +12,12 @@ struct FluidSection {
   double velocity_h[3], acceleration_h[3];  ///< v_h, a_h of (1)
   double force[3];                          ///< g; by position and by the world rotation increment:
   double force_p[9], force_phi[9];
+
+  /// Loads per length: constant in world axes, and in those of the section.
+  double loaded;  ///< 0 without any
+  double dead_force[3], dead_moment[3], own_force[3], own_moment[3];
+  double applied[3];                ///< their force, world axes; a part of -g
+  double moment[3], moment_phi[9];  ///< what they add to m_s, and by the world rotation increment
 };
 
 }  // namespace cprsim

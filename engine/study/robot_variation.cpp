@@ -156,6 +156,8 @@ void add_bodies(const Robot& robot, bool metric, RobotVariation& v) {
   for (const RobotRod& rod : robot.rods) {
     for (const PointLoad& load : rod.forcing.loads)
       if (load.follower || load.torque.norm() > 0) v.potential = false;
+    for (const LineLoad& line : rod.forcing.lines)
+      if (line.follower || line.torque.norm() > 0) v.potential = false;
     const FluidProperties& fluid = rod.section.fluid;
     if ((fluid.normal > 0 || fluid.tangential > 0) && !rod.forcing.wind.isZero(0))
       v.potential = false;

@@ -265,6 +265,10 @@ void check_drives(Reading& r) {
             .at(Severity::kError, "E520", drive.place, 13,
                 "rod '" + rod.name + "' cannot be fed: its sections or its rest shape vary")
             .suggestion = "available: rods that are the same all along";
+      for (const LoadSpec& load : scene.loads)
+        if (load.to && load.rod == drive.rod)
+          r.report.at(Severity::kError, "E520", load.place, 11,
+                      "a load along a rod whose length is driven is not available in this version");
       const Extremes e = extremes_of(drive.profile, scene.simulation.duration, false);
       if (e.least <= 0)
         r.report.at(Severity::kError, "E508", drive.place, 13,

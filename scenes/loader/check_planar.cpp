@@ -152,6 +152,14 @@ class PlanarCheck {
   }
 
   void check(const LoadSpec& load) {
+    if (load.to) {
+      const RodSpec& rod = scene_.rods[at(load.rod)];
+      const Method method = rod.method.value_or(scene_.solver.method);
+      if (method == Method::kAuto || method == Method::kShooting)
+        complain(load.place, 11,
+                 "a load along rod '" + rod.name + "', which shooting in a plane does not know",
+                 "leave <planar> out, or take method=\"strain\" or \"collocation\"");
+    }
     Mat3 R = load.R_expressed;
     if (load.follower && load.rod < 0) R = in_world(load.at).R * R;
     if (load.follower && load.rod >= 0) {

@@ -193,13 +193,50 @@ bool resolve_point(Reading& r, const Node& node, int scope, LoadSpec& load) {
   return false;
 }
 
+// along="rod" from="0.2" to="0.5": per length on that part
+bool resolve_line(Reading& r, const Node& node, int scope, LoadSpec& load) {
+  const Attribute& a = *node.attribute("along");
+  const auto rod = r.frames.find_outwards(scope, a.value);
+  if (!rod || rod->kind != FrameKind::kRod) {
+    r.report.bad_value("E404", node, a, "there is no rod '" + a.value + "'",
+                       mean(nearest_name(a.value, r.frames.known_names(scope))));
+    return false;
+  }
+  load.rod = rod->index;
+  const auto fraction = [&](const char* key, double otherwise) {
+    const Attribute* given = node.attribute(key);
+    return given ? parse_number(given->value).value_or(otherwise) : otherwise;
+  };
+  load.rod_s = fraction("from", 0);
+  load.to = fraction("to", 1);
+  if (load.rod_s < 0 || *load.to > 1 || load.rod_s >= *load.to)
+    r.report.bad_value("E306", node, a,
+                       "from and to are fractions of the length, 0 <= from < to <= 1");
+  return true;
+}
+
+/// At a point or along a rod: one of the two.
+bool resolve_where(Reading& r, const Node& node, int scope, LoadSpec& load) {
+  const bool along = node.attribute("along");
+  if (along == (node.attribute("at") != nullptr)) {
+    r.report.error("E310", node, "a load acts at a point or along a rod: give one of at, along");
+    return false;
+  }
+  for (const char* key : {"from", "to"})
+    if (const Attribute* part = node.attribute(key); part && !along) {
+      r.report.bad_value("E310", node, *part, "only a load along a rod has a part of it");
+      return false;
+    }
+  return along ? resolve_line(r, node, scope, load) : resolve_point(r, node, scope, load);
+}
+
 // components are in the world's axes, in axes that never move, or follow the loaded body or section
 void resolve_axes(Reading& r, const Node& node, int scope, const std::vector<bool>& fixed,
                   LoadSpec& load) {
   const Attribute* in = node.attribute("expressed_in");
   if (!in || in->value.empty() || in->value == "world") return;
   const auto place = parse_rod_place(in->value);
-  if (in->value == node.value("at") && load.rod >= 0) {
+  if (load.rod >= 0 && in->value == node.value(load.to ? "along" : "at")) {
     load.follower = true;
     return;
   }
@@ -232,7 +269,7 @@ void resolve_axes(Reading& r, const Node& node, int scope, const std::vector<boo
 void read_load(Reading& r, const Node& node, int scope, const std::vector<bool>& fixed) {
   LoadSpec load;
   load.place = node.place;
-  if (!resolve_point(r, node, scope, load)) return;
+  if (!resolve_where(r, node, scope, load)) return;
   resolve_axes(r, node, scope, fixed, load);
   load.force = vec3_of(node.child("force"), Vec3::Zero());
   load.torque = vec3_of(node.child("torque"), Vec3::Zero());

@@ -60,6 +60,12 @@ std::vector<RodCase> costed_cases() {
              damp(scene.rods[0], 1e-3);
            }},
           {"drag", true, immerse},
+          {"load along it", false,
+           [](Scene& scene) {
+             LoadSpec& load = add_load(scene, 0, {1, 0, 0});
+             load.to = 1;
+             load.follower = true;
+           }},
           {"tendon", false, [](Scene& scene) { add_tendon(scene, 8e-3, 0, 1); }},
           {"varying sections", false, taper},
           {"planar, at rest", false, [](Scene& scene) { scene.planar_normal = Vec3::UnitY(); }},

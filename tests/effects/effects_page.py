@@ -39,6 +39,8 @@ EFFECTS = [
      "tests/laws/energy_test.cpp", "engine/rod/shooting.cpp"),
     ("fluid", "<drag/> and the rod's <drag>", "drag, buoyancy, added mass", "drag", "none, moving",
      "tests/laws/fluid_test.cpp", "engine/section/fluid.h"),
+    ("load along a rod", '<cprsim:load along="...">', "a force and a moment per length", "load along it",
+     "none, at rest", "tests/laws/line_load_test.cpp", "engine/section/line_load.h"),
     ("tendons", "<cprsim:tendon>", "their pull in the law", "tendon", "none, at rest", "tests/laws/tendon_test.cpp",
      "engine/section/tendon_law.h"),
     ("varying sections", 'several <cross_section s="...">', "coefficients of every section", "varying sections",

@@ -93,6 +93,7 @@ constexpr std::string_view kStarterScene = R"xml(<?xml version="1.0"?>
       </cprsim:rod>
       <!-- <cprsim:tendon name="cable" rod="wire"><parallel radius="0.008" angle="0"/></cprsim:tendon><cprsim:drive tendon="cable" quantity="tension"><constant value="5"/></cprsim:drive> --> <!-- pulled with 5 N -->
       <cprsim:load at="ball"><force>0 0 0.2</force><step from="1" to="0" at="0.05"/></cprsim:load>
+      <!-- <cprsim:load along="wire"><force>0 1 0</force></cprsim:load> --> <!-- 1 N/m all along it -->
       <!-- <cprsim:load at="wire(s=0.5)"><force>0 0 -0.1</force></cprsim:load> --> <!-- at a point of the rod -->
     </model>
 

@@ -239,6 +239,19 @@ TEST(NewtonDirection, IsExactUnderDeadAndFollowerLoads) {
   }
 }
 
+TEST(NewtonDirection, IsExactUnderLoadsAlongRods) {
+  Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+  for (bool follower : {false, true}) {
+    scene.loads.push_back(sample_load(follower));
+    scene.loads.back().rod = 1;
+    scene.loads.back().rod_s = follower ? 0.2 : 0;
+    scene.loads.back().to = follower ? 1 : 0.6;
+  }
+  expect_exact(scene, {}, "inextensible, statics");
+  set_all_effects(scene);
+  expect_exact(scene, {Mode::kBackwardEuler}, "extensible, dynamics");
+}
+
 DriveSpec joint_drive(int joint, DriveQuantity quantity, int freedom = 0) {
   DriveSpec drive;
   drive.joint = joint;
