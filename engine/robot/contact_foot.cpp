@@ -75,8 +75,8 @@ double nearest_in(const Cubic& c, const Vec3& x, double first, double& xi) {
 }  // namespace
 
 // Among what lies beyond the arc length `from`.
-RodContacts::Foot RodContacts::foot(const Rod& other, const Vec3& x, double from) const {
-  const std::vector<NodeState>& nodes = other.side->contact_nodes();
+RodContacts::Foot RodContacts::foot(const Rod& other, const std::vector<NodeState>& nodes,
+                                    const Vec3& x, double from) const {
   const std::vector<double>& grid = other.side->contact_grid();
   const double start = from / other.rod->length;
   double best = std::numeric_limits<double>::infinity(), least = best;
@@ -116,12 +116,35 @@ RodContacts::Foot RodContacts::foot(const Rod& other, const Vec3& x, double from
 RodContacts::Foot RodContacts::foot(const Rod& rod, const Obstacle& obstacle, std::size_t cell,
                                     double xi) const {
   const Rod& other = rods_[static_cast<std::size_t>(obstacle.rod)];
-  double from = 0;
-  if (obstacle.itself) {
-    const double arc = rod.side->contact_grid()[cell] * rod.rod->length;
-    from = arc + (xi > 0 ? xi * length(rod, cell) : 0) + rod.apart;
+  return foot(other, other.side->contact_nodes(), point(rod, cell, xi),
+              beyond(rod, obstacle, cell, xi));
+}
+
+/// Arc length from which on an obstacle that is a rod is looked at from a point.
+double RodContacts::beyond(const Rod& rod, const Obstacle& obstacle, std::size_t cell,
+                           double xi) const {
+  if (!obstacle.itself) return 0;
+  const double arc = rod.side->contact_grid()[cell] * rod.rod->length;
+  return arc + (xi > 0 ? xi * length(rod, cell) : 0) + rod.apart;
+}
+
+/// e of engine/rod/contact.h for a point of a rod.
+double RodContacts::sunk(const Rod& rod, const RodContact& contact) const {
+  if (left_ == 0 || rod.begun.empty()) return 0;
+  const auto o = static_cast<std::size_t>(contact.surface);
+  const Obstacle& obstacle = rod.obstacles[o];
+  const Vec3 x = point(rod, rod.begun, contact.cell, contact.xi);
+  double d = 0;
+  if (obstacle.rod >= 0) {
+    const Rod& other = rods_[static_cast<std::size_t>(obstacle.rod)];
+    d = foot(other, other.begun, x, beyond(rod, obstacle, contact.cell, contact.xi)).at.d;
+  } else {
+    const Surface& surface = obstacle.surface;
+    d = distance_to(surface, obstacle.body < 0 ? surface.X_WC : rod.start.bodies[o] * surface.X_WC,
+                    x)
+            .d;
   }
-  return foot(other, point(rod, cell, xi), from);
+  return left_ * std::min(0.0, d - rod.radius);
 }
 
 Distance RodContacts::distance(const Rod& rod, std::size_t o, std::size_t cell, double xi) const {

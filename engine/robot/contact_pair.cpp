@@ -98,7 +98,7 @@ PairRows rows_with_body(const RodContact& contact, const Surface& surface, const
     v_by_phi = -back * hat(arm);
   }
   rows.slip = contact_velocity(contact.xi, contact.lever, ends) - v;
-  const GripRows row = grip_rows(contact, rows.at.d - radius, n, rows.slip, scale);
+  const GripRows row = grip_rows(contact, rows.at.d - radius - contact.sunk, n, rows.slip, scale);
   rows.value = row.value;
   rows.by_force = row.by_force;
   const Mat3 by_distance = row.by_gap * n.transpose() + row.by_n * rows.at.H;
@@ -131,7 +131,8 @@ PairRows rows_with_rod(const RodContact& contact, const RodSide& own, const RodS
   rows.at.H = (Mat3::Identity() - rows.at.n * rows.at.n.transpose()) / d;
   rows.slip = contact_velocity(xi, contact.lever, own.ends) -
               contact_velocity(other_xi, contact.other_lever, other.ends);
-  const GripRows row = grip_rows(contact, rows.at.d - own.radius, rows.at.n, rows.slip, scale);
+  const GripRows row =
+      grip_rows(contact, rows.at.d - own.radius - contact.sunk, rows.at.n, rows.slip, scale);
   rows.value = row.value;
   rows.by_force = row.by_force;
   // dm = M (dg - dB y) - B K dB^T m

@@ -16,6 +16,8 @@ constexpr double kNotice = 0.1 * kContactTolerance;
 constexpr double kEdge = 1e-5;
 // turn of the surface's normal along a cell: less is flat
 constexpr double kFlat = 1e-6;
+// a slip rate that is nearly nothing must not drown in round-off what it is weighed against
+constexpr double kMostKappa = 1e3;
 // of a cell: a node this near to a contact needs none of its own
 constexpr double kBeside = 0.1;
 
@@ -27,7 +29,11 @@ double RodContacts::length(const Rod& rod, std::size_t cell) const {
 }
 
 Vec3 RodContacts::point(const Rod& rod, std::size_t cell, double xi) const {
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
+  return point(rod, rod.side->contact_nodes(), cell, xi);
+}
+
+Vec3 RodContacts::point(const Rod& rod, const std::vector<NodeState>& nodes, std::size_t cell,
+                        double xi) const {
   ContactNode ends[2];
   ends[0].p = position_of(nodes[cell]);
   if (xi == 0) return ends[0].p;
@@ -203,9 +209,12 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
   // what comes rubs before it may stick: where a rod was led to is where it slid to. But one that
   // nothing else holds would be free to go
   const bool loose = !rod.rod->base_held && !rod.rod->tip_held;
-  contact.grip = contact.friction > 0 && loose ? Grip::kStick : Grip::kSmooth;
+  contact.grip = contact.friction > 0 && loose && !lagged_ ? Grip::kStick : Grip::kSmooth;
+  if (lagged_) contact.bound = 0;
+  contact.may_rest = eased_ > 0;
   contact.lever = -rod.radius * distance(rod, obstacle, cell, xi).n;
   contact.axis = tangent(rod, cell, xi);
+  contact.sunk = sunk(rod, contact);
   if (rod.obstacles[obstacle].fixed()) return contact;
   contact.role = ContactRole::kShared;
   contact.body = rod.obstacles[obstacle].body;
@@ -290,7 +299,8 @@ void RodContacts::leap(Rod& rod, const RodContact& contact, double by, std::size
 }
 
 /// Moves a contact to where the rod now is nearest. @return whether it was elsewhere
-bool RodContacts::follow(Rod& rod, RodContact& contact, const ContactRows& rows) const {
+bool RodContacts::follow(Rod& rod, RodContact& contact, const ContactRows& rows,
+                         bool slides) const {
   const Vec3 lever = -rod.radius * rows.at.n;
   const bool turned = contact.friction > 0 && (lever - contact.lever).norm() > 1e-6 * rod.radius;
   contact.lever = lever;
@@ -298,9 +308,10 @@ bool RodContacts::follow(Rod& rod, RodContact& contact, const ContactRows& rows)
   if (contact.grip == Grip::kSlip) {
     // slip and force weigh the same in the direction of friction
     const double rate = rows.slip.norm(), force = contact.force.norm();
-    if (rate > 0 && force > 0) contact.kappa = std::max(1.0, force / rate);
+    if (rate > 0 && force > 0) contact.kappa = std::clamp(force / rate, 1.0, kMostKappa);
   }
-  const bool slid = slide(rod, contact), stepped = place_foot(rod, contact);
+  const bool slid = slides && slide(rod, contact), stepped = place_foot(rod, contact);
+  contact.sunk = sunk(rod, contact);
   return slid || stepped || turned;
 }
 
@@ -331,8 +342,10 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
     });
   };
   const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {
-    changes.push_back(
-        {(rod.radius - d) / rod.radius, index, -1, false, new_contact(rod, o, cell, xi)});
+    const RodContact contact = new_contact(rod, o, cell, xi);
+    // what had sunk before may lie deep
+    const double depth = rod.radius + contact.sunk - d;
+    if (depth > fine) changes.push_back({depth / rod.radius, index, -1, false, contact});
   };
   std::vector<double> xi(cells), low(cells);
   for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {

@@ -12,10 +12,16 @@ namespace {
 
 // of the robot's force: pulls below are round-off
 constexpr double kPull = 1e-9;
+// of the radius: less is no way along the force of friction, but round-off
+constexpr double kCreep = 1e-6;
 // from this round on one change at a time
 constexpr int kPatience = 12;
+// later the first, not the worst: no cycle then (Murty, Opsearch 11, 1974)
+constexpr int kFirstOnly = 40;
+// and points stay where they are on their rods
+constexpr int kHeld = 30;
 
-/// Before: contacts within a cell come after the node at its start.
+/// In cells along the rod: contacts within a cell come after the node at its start.
 double order(const RodContact& contact) {
   return static_cast<double>(contact.cell) + (contact.at_node() ? 0 : 0.5);
 }
@@ -47,23 +53,26 @@ void RodContacts::review(std::size_t index, std::vector<Change>& changes) const 
     if (contact.role == ContactRole::kEcho) continue;
     const Vec3& n = rows[i].at.n;
     const double pressure = n.dot(contact.force);
+    const double limit = contact.most_friction(pressure);
     const Vec3 grip = contact.force - pressure * n, slip = rows[i].slip - n.dot(rows[i].slip) * n;
+    const ContactScale scale = rod.side->contact_scale();
+    const double way = slip.norm() / scale.rate * scale.length;
     Change change{0, index, static_cast<int>(i), false, contact};
     if (pressure < -kPull * unit) {
       if (!pulls_most(rod, i)) continue;
       change.urgency = -pressure / unit;
-      change.drop = true;
-    } else if (contact.grip == Grip::kSmooth && contact.friction > 0 && pressure > kPull * unit) {
-      // as it moved without friction, as far as that is a way at all
-      const ContactScale scale = rod.side->contact_scale();
-      const double way = slip.norm() / scale.rate * scale.length;
-      change.urgency = contact.friction * pressure / unit;
-      change.contact.grip = way > kSlide * rod.radius ? Grip::kSlip : Grip::kStick;
-    } else if (contact.grip == Grip::kStick &&
-               grip.norm() > contact.friction * pressure + kPull * unit) {
-      change.urgency = (grip.norm() - contact.friction * pressure) / unit;
+      change.drop = contact.grip != Grip::kStick || contact.friction == 0 || eased_ == 0;
       change.contact.grip = Grip::kSlip;
-    } else if (contact.grip == Grip::kSlip && slip.dot(grip) > 0) {
+    } else if (contact.grip == Grip::kSmooth && limit > 0 && pressure > kPull * unit) {
+      // as it moved without friction, as far as that is a way at all
+      change.urgency = limit / unit;
+      change.contact.grip = way > kSlide * rod.radius ? Grip::kSlip : Grip::kStick;
+    } else if (contact.grip == Grip::kStick && grip.norm() > limit + kPull * unit) {
+      change.urgency = (grip.norm() - limit) / unit;
+      change.contact.grip = Grip::kSlip;
+    } else if (contact.grip == Grip::kSlip &&
+               ((slip.dot(grip) > 0 && way > kCreep * rod.radius) ||
+                (contact.may_rest && grip.norm() < limit - kPull * unit))) {
       change.urgency = grip.norm() / unit;
       change.contact.grip = Grip::kStick;
     } else {
@@ -171,7 +180,7 @@ bool RodContacts::revise(int round) {
     if (round == 0) rod.slides.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i)
       if (contacts[i].role != ContactRole::kEcho &&
-          follow(rod, contacts[i], rod.side->contact_state()[i]))
+          follow(rod, contacts[i], rod.side->contact_state()[i], round < kHeld))
         again = true;
     review(r, changes);
     search(r, changes);
@@ -180,7 +189,13 @@ bool RodContacts::revise(int round) {
     update_echoes();
     return false;
   }
-  if (round >= kPatience && !changes.empty()) {
+  if (round >= kFirstOnly && !changes.empty()) {
+    const auto first =
+        std::min_element(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+          return a.rod != b.rod ? a.rod < b.rod : order(a.contact) < order(b.contact);
+        });
+    changes = {*first};
+  } else if (round >= kPatience && !changes.empty()) {
     const auto worst =
         std::max_element(changes.begin(), changes.end(),
                          [](const Change& a, const Change& b) { return a.urgency < b.urgency; });
@@ -190,19 +205,62 @@ bool RodContacts::revise(int round) {
   return true;
 }
 
+bool RodContacts::ease() {
+  constexpr int kEasedSteps = 20;
+  if (left_ == 0) return false;  // statics is led to where it rests
+  eased_ = kEasedSteps;
+  bool any = false;
+  for (Rod& rod : rods_)
+    for (RodContact& contact : rod.side->contacts()) {
+      contact.may_rest = true;
+      any = any || contact.grip == Grip::kSlip;
+    }
+  return any;
+}
+
+bool RodContacts::hold() {
+  if (left_ == 0) return false;
+  bool any = false;
+  for (Rod& rod : rods_)
+    for (RodContact& contact : rod.side->contacts()) {
+      if (contact.grip != Grip::kSlip) continue;
+      contact.grip = contact.bound == 0 ? Grip::kSmooth : Grip::kStick;
+      any = true;
+    }
+  return any;
+}
+
 bool RodContacts::touching() const {
   return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return touches(rod); });
 }
 
 void RodContacts::begin_step() {
   const PhaseTimer timer(any() ? robot_.clock : nullptr, Phase::kContact);
+  left_ = 0;
+  eased_ = std::max(0, eased_ - 1);
   for (Rod& rod : rods_) {
     rod.before = rod.side->contacts();
+    rod.begun = rod.side->contact_nodes();
+    for (RodContact& contact : rod.side->contacts()) {
+      contact.sunk = 0;
+      contact.may_rest = eased_ > 0;
+      contact.bound = -1;
+      if (lagged_)
+        contact.bound =
+            contact.friction * std::max(0.0, -contact.lever.dot(contact.force) / rod.radius);
+    }
     // while a rod is far away, the distances of an older scan will do
     if (rod.scan.nodes.empty() || touches(rod) || 8 * moved(rod, rod.scan) >= rod.scan.clearance)
       scan(rod);
     rod.start = rod.scan;
   }
+}
+
+void RodContacts::begin_stage(double since) {
+  left_ = recovery_ > 0 ? std::exp(-since / recovery_) : 0;
+  for (Rod& rod : rods_)
+    for (RodContact& contact : rod.side->contacts())
+      if (contact.role != ContactRole::kEcho) contact.sunk = sunk(rod, contact);
 }
 
 bool RodContacts::changed() const {
@@ -215,7 +273,10 @@ bool RodContacts::changed() const {
                          [](const RodContact& c) { return c.role == ContactRole::kEcho; }),
           contacts->end());
     const auto alike = [](const RodContact& a, const RodContact& b) {
-      return a.surface == b.surface && a.grip == b.grip;
+      // a point in a cell slides along its rod; a node comes or goes
+      const bool same_place =
+          a.at_node() && b.at_node() ? a.cell == b.cell : std::abs(order(a) - order(b)) <= 1;
+      return a.surface == b.surface && a.grip == b.grip && same_place;
     };
     return now.size() != before.size() ||
            !std::equal(now.begin(), now.end(), before.begin(), alike);

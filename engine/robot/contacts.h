@@ -50,11 +50,29 @@ class RodContacts {
 
   static constexpr int kMostRounds = 100;
 
+  /// For some steps what slips may come to rest within a solve, too: a sequence of sets of sticking
+  /// points is gone through by Newton's method itself. @return whether anything slips
+  bool ease();
+
+  /// What slips is to stick for the next solve: its rows are as good as linear then. @return
+  /// whether anything slipped
+  bool hold();
+
   /// Whether any rod touches something now.
   bool touching() const;
 
-  /// A step or a static increment begins here.
+  /// A step or a static increment begins here. What has sunk is to be put back at once.
   void begin_step();
+
+  /// What has sunk when the step began is put back over the recovery time; so much of the step has
+  /// passed where the next solve looks.
+  void begin_stage(double since);
+
+  /// From the next step on friction is bounded by what pressed when the step began, and what comes
+  /// is smooth: no less dissipative than Coulomb's law, and always soluble.
+  void lag_friction(bool on) { lagged_ = on; }
+
+  void set_recovery_time(double time) { recovery_ = time; }
 
   /// Whether points came or went, stuck or slipped since begin_step().
   bool changed() const;
@@ -118,6 +136,7 @@ class RodContacts {
     double apart = 0;  ///< a, m
     std::vector<Obstacle> obstacles;
     Scan scan, start;
+    std::vector<NodeState> begun;  ///< nodes when the step began
     std::vector<RodContact> before;
     std::vector<Slide> slides;  ///< of the present solve
   };
@@ -143,15 +162,20 @@ class RodContacts {
   void add_other_rods();
   void add_rods_themselves();
   void give_surfaces(Rod& rod);
-  Foot foot(const Rod& other, const Vec3& x, double from) const;
+  Foot foot(const Rod& other, const std::vector<NodeState>& nodes, const Vec3& x,
+            double from) const;
   Foot foot(const Rod& rod, const Obstacle& obstacle, std::size_t cell, double xi) const;
+  double beyond(const Rod& rod, const Obstacle& obstacle, std::size_t cell, double xi) const;
   double passed(const Rod& rod, const Scan& since, std::size_t obstacle, std::size_t cell) const;
   bool place_foot(const Rod& rod, RodContact& contact) const;
+  double sunk(const Rod& rod, const RodContact& contact) const;
   void update_echoes();
   void mirror();
 
   double length(const Rod& rod, std::size_t cell) const;
   Vec3 point(const Rod& rod, std::size_t cell, double xi) const;
+  Vec3 point(const Rod& rod, const std::vector<NodeState>& nodes, std::size_t cell,
+             double xi) const;
   Distance distance(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;
   double lowest(const Rod& rod, std::size_t obstacle, std::size_t cell, double& xi) const;
   Vec3 tangent(const Rod& rod, std::size_t cell, double xi) const;
@@ -161,7 +185,7 @@ class RodContacts {
   bool far_away(const Rod& rod) const;
   void scan(Rod& rod) const;
   bool held(const Rod& rod, std::size_t node) const;
-  bool follow(Rod& rod, RodContact& contact, const ContactRows& rows) const;
+  bool follow(Rod& rod, RodContact& contact, const ContactRows& rows, bool slides) const;
   bool slide(Rod& rod, RodContact& contact) const;
   void leap(Rod& rod, const RodContact& contact, double by, std::size_t& cell, double& xi) const;
   bool pulls_most(const Rod& rod, std::size_t contact) const;
@@ -174,7 +198,10 @@ class RodContacts {
   std::vector<std::unique_ptr<MeshDistance>>
       meshes_;              ///< of the scene's, those that rods may touch
   std::vector<int> index_;  ///< Robot::rods → rods_
-  bool friction_ = false;
+  bool friction_ = false, lagged_ = false;
+  int eased_ = 0;        ///< steps for which ease() still holds
+  double recovery_ = 0;  ///< time in which depth falls to 1 / e, s
+  double left_ = 0;      ///< share of the depth at the step's begin that is left to it now
   std::vector<Rod> rods_;
 };
 

@@ -26,9 +26,11 @@ GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const V
   row.value = gap / scale.length * n;
   row.by_gap = n / scale.length;
   row.by_n = gap / scale.length * Mat3::Identity();
+  const Mat3 give = scale.axial_compliance / scale.length * contact.axis * contact.axis.transpose();
+  const Vec3 given = give * (contact.force - contact.held);
   if (contact.grip == Grip::kStick) {
-    row.by_force = scale.axial_compliance / scale.length * contact.axis * contact.axis.transpose();
-    row.value += P * rate + row.by_force * (contact.force - contact.held);
+    row.by_force = give;
+    row.value += P * rate + given;
     row.by_n += projected_by_n(n, rate);
     row.by_u = P / scale.rate;
     return row;
@@ -36,19 +38,38 @@ GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const V
   row.value += P * f;
   row.by_n += projected_by_n(n, f);
   row.by_force = P / scale.force;
-  // nor does a contact rub that pulls, soon to be dropped: (5) might have no solution then
-  if (contact.grip == Grip::kSmooth || !(n.dot(f) > 0)) return row;
-  // tau / |tau| with tau = P w
-  const Vec3 w = f - contact.kappa * rate, tau = P * w;
+  if (contact.grip == Grip::kSmooth) return row;
+  // tau = P w. A contact that pulls will be dropped: until then (5) goes on as it was, lest
+  // Newton's method stop at the kink
+  const double limit = contact.most_friction(n.dot(contact.force)) / scale.force;
+  const bool pulls = !(limit > 0), by_pressure = contact.bound < 0;
+  const double kappa = contact.kappa;
+  Vec3 w = -kappa * (rate + given);
+  Mat3 w_by_force = -kappa * give;
+  if (!pulls) {
+    w += f;
+    w_by_force += Mat3::Identity() / scale.force;
+  }
+  const Vec3 tau = P * w;
   const double size = tau.norm();
-  if (!(size > 0)) return row;
+  if (pulls && !(size > 0)) return row;
+  if (contact.may_rest && size <= limit) {
+    row.value -= tau;
+    row.by_n -= projected_by_n(n, w);
+    row.by_u = kappa / scale.rate * P;
+    row.by_force -= P * w_by_force;
+    return row;
+  }
   const Vec3 along = tau / size;
-  const Mat3 turn = (Mat3::Identity() - along * along.transpose()) / size;
-  const double mu_n = contact.friction * n.dot(f);
-  row.value -= mu_n * along;
-  row.by_n -= mu_n * turn * projected_by_n(n, w) + contact.friction * along * f.transpose();
-  row.by_u += mu_n * contact.kappa / scale.rate * turn * P;
-  row.by_force -= (mu_n * turn * P + contact.friction * along * n.transpose()) / scale.force;
+  const Mat3 turn = limit * (Mat3::Identity() - along * along.transpose()) / size;
+  row.value -= limit * along;
+  row.by_n -= turn * projected_by_n(n, w);
+  row.by_u += kappa / scale.rate * turn * P;
+  row.by_force -= turn * P * w_by_force;
+  if (by_pressure) {
+    row.by_n -= contact.friction * along * f.transpose();
+    row.by_force -= contact.friction / scale.force * along * n.transpose();
+  }
   return row;
 }
 
@@ -93,7 +114,8 @@ ContactRows contact_rows(const RodContact& contact, const Surface& surface, doub
   ContactRows rows;
   rows.slip = contact_velocity(contact.xi, contact.lever, ends);
   rows.at = distance_to(surface, surface.X_WC, contact_point(contact.xi, ends.h, ends.node));
-  const GripRows row = grip_rows(contact, rows.at.d - radius, rows.at.n, rows.slip, scale);
+  const GripRows row =
+      grip_rows(contact, rows.at.d - radius - contact.sunk, rows.at.n, rows.slip, scale);
   rows.value = row.value;
   rows.by_force = row.by_force;
   carry_to_ends(contact.xi, contact.lever, ends,

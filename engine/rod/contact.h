@@ -17,6 +17,8 @@
 // How sticking points share their axial friction is open where the rod cannot stretch; (4) then has
 // a a^T (f - f_0) C / L besides: a the tangent, f_0 the force when the step began, C the compliance
 // that a cell would have. Nothing creeps, since f_0 follows f.
+// What is sunk when a time step begins is given time to come back: for d - r in (3) to (5) read
+// d - r - e, e being the depth that is left to it. Put back at once it would be thrown.
 // Which points touch, and which of (3) to (5) holds, is decided between solves
 // (engine/robot/contacts.h). L, F are the rod's scales, U is L times the rate of the scheme.
 #pragma once
@@ -53,6 +55,9 @@ struct RodContact {
   double xi = 0;
   Grip grip = Grip::kSmooth;
   double friction = 0;        ///< mu
+  bool may_rest = false;      ///< while it is said to slip: |tau| < mu (n.f) / F in (5) is stick
+  double bound = -1;          ///< of friction, N; below 0: mu times the pressure
+  double sunk = 0;            ///< e, not above 0, m
   double kappa = 1;           ///< weighs u in (6)
   Vec3 lever = Vec3::Zero();  ///< l, as it was when the point was chosen
   Vec3 axis = Vec3::UnitZ();  ///< a, likewise
@@ -66,6 +71,9 @@ struct RodContact {
   std::size_t other_cell = 0;
   double other_xi = 0;
   Vec3 other_lever = Vec3::Zero();  ///< from the other centreline to its surface
+
+  /// Largest friction under a pressure.
+  double most_friction(double pressure) const { return bound < 0 ? friction * pressure : bound; }
 
   bool at_node() const { return xi == 0; }
 
@@ -105,7 +113,7 @@ struct ContactRows {
   Vec3 slip;    ///< u
 };
 
-/// (3) to (5) for a gap d - r, a normal and a slip rate.
+/// (3) to (5) for a gap d - r - e, a normal and a slip rate.
 struct GripRows {
   Vec3 value = Vec3::Zero(), by_gap = Vec3::Zero();
   Mat3 by_n = Mat3::Zero(), by_u = Mat3::Zero(), by_force = Mat3::Zero();

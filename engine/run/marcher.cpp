@@ -79,22 +79,36 @@ void Marcher::predict(double time) {
   if (!past_.empty()) equations_.set_unknowns(past_.back().unknowns);
 }
 
-// Newton from the prediction; failing that, from where the step began; failing that,
-// Levenberg-Marquardt.
+// Newton from the prediction; failing that, from where the step began, where rods touch also with
+// full steps, and with what slips held; failing that, Levenberg-Marquardt.
 SolveReport Marcher::solve_once(double time) {
   predict(time);
   SolveReport report = newton(equations_, options_);
+  const auto again = [&](SolveReport (*solve)(Problem&, const SolveOptions&),
+                         const SolveOptions& options) {
+    const int spent = report.iterations;
+    report = solve(equations_, options);
+    report.iterations += spent;
+  };
   if (report.converged()) return report;
-  const int spent = report.iterations;
   equations_.set_unknowns(start_);
-  report = newton(equations_, options_);
-  if (!report.converged()) {
+  again(newton, options_);
+  if (!report.converged() && contacts_.touching()) {
     equations_.set_unknowns(start_);
-    const int more = report.iterations;
-    report = levenberg_marquardt(equations_, options_);
-    report.iterations += more;
+    if (contacts_.ease()) again(newton, options_);
+    if (report.converged()) return report;
+    SolveOptions bold = options_;
+    bold.bold = true;
+    equations_.set_unknowns(start_);
+    contacts_.ease();
+    again(newton, bold);
+    if (report.converged()) return report;
+    equations_.set_unknowns(start_);
+    if (contacts_.hold()) again(newton, options_);
   }
-  report.iterations += spent;
+  if (report.converged()) return report;
+  equations_.set_unknowns(start_);
+  again(levenberg_marquardt, options_);
   return report;
 }
 
@@ -159,12 +173,14 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
   if (past_.empty()) past_.push_back({t, start_});
   past_accepted_ = past_.size();
   const int stages = stepper_.begin_step(h, tracks_);
-  std::vector<double> losses{ledger.damping_power()}, works{ledger.drive_power(t, false)};
+  if (loss_ < 0) loss_ = ledger.damping_power();
+  std::vector<double> losses{loss_}, works{ledger.drive_power(t, false)};
   for (int i = 0; i < stages; ++i) {
     rates_ = stepper_.begin_stage(i, tracks_);
     const double time = t + stepper_.stage_time(i) * h;
     // the end of a step may be a jump: the step itself sees what was before
     equations_.set_instant(time, true, rates_);
+    contacts_.begin_stage(time - t);
     SolveReport report = solve_stage(time);
     report.iterations += out.report.iterations;
     report.evaluations += out.report.evaluations;
@@ -173,12 +189,13 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     out.report = report;
     if (!report.converged()) return out;
     finish_stage(i);
+    out.touched = out.touched || contacts_.changed();
     past_.push_back({time, equations_.unknowns()});
     losses.push_back(ledger.damping_power());
     works.push_back(ledger.drive_power(time, true));
   }
   out.converged = true;
-  out.touched = contacts_.changed();
+  loss_after_ = losses.back();
   out.leapt = contacts_.leapt();
   out.error = error_estimate();
   out.damping_loss = stepper_.integrate(losses) * h;
@@ -206,6 +223,7 @@ double Marcher::error_estimate() const {
 void Marcher::visit(Archive& archive) {
   stepper_.visit(archive);
   archive(h_);
+  archive(loss_);
   const std::size_t count = archive.count(past_.size(), kPastKept);
   if (archive.reading()) past_.assign(count, {0, equations_.unknowns()});
   for (Solved& solved : past_) {
@@ -216,6 +234,7 @@ void Marcher::visit(Archive& archive) {
 
 void Marcher::accept() {
   stepper_.accept(tracks_);
+  loss_ = loss_after_;
   for (RigidBody& body : robot_.bodies)
     body.accept_tracks();
   for (Joint& joint : robot_.joints)

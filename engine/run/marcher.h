@@ -92,6 +92,9 @@ class Marcher {
   RobotUnknowns start_;
   StageRates rates_;
   double h_ = 0;
+  /// Damping power when the step began and as it ends, W; below 0: not known yet. The robot itself
+  /// says what the last attempt made of it.
+  double loss_ = -1, loss_after_ = -1;
 };
 
 }  // namespace cprsim

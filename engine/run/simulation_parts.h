@@ -25,6 +25,9 @@ namespace cprsim {
 /// Four digits, for messages.
 std::string short_number(double x);
 
+/// Time in which what has sunk into an obstacle comes back, over that of the longest step.
+constexpr double kRecovery = 10;
+
 struct Simulation::Parts {
   const Scene scene;  // bodies, rods and loads point into it
   std::unique_ptr<FreeBodies> free_bodies;
@@ -62,6 +65,7 @@ struct Simulation::Parts {
     h = plan.adaptive ? std::min(plan.step, 1e-3) : plan.step;
     if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
     breaks = break_times(scene, end);
+    contacts.set_recovery_time(kRecovery * scene.max_step_size);
   }
 
   bool free_only() const { return robot.rods.empty() && robot.bodies.empty(); }
@@ -190,7 +194,7 @@ struct Simulation::Parts {
 
   void soften(bool touched);
   bool contacts_object(const Marcher::Outcome& outcome, double step, double& target);
-  bool throws(double t_new, const Marcher::Outcome& outcome) const;
+  double gain(double t_new, const Marcher::Outcome& outcome) const;
   void settle(double t_new, double h_used, const Marcher::Outcome& outcome);
   void step_dynamic();
   void step_by_ida();

@@ -13,6 +13,12 @@ namespace {
 // the largest step where the scheme chooses it.
 constexpr int kCushionedSteps = 3;
 constexpr double kCushion = 0.1;
+// A step of the scheme that touches something and makes more energy is taken by backward Euler
+// instead.
+constexpr double kMostGain = 1e-3;
+
+// What is rescued may be halved so much more often: nothing is thrown in short steps.
+constexpr int kRescueRetries = 8;
 
 }  // namespace
 
@@ -50,11 +56,15 @@ void Simulation::Parts::soften(bool touched) {
 /// Whether a step must be taken again for the sake of contacts: shorter, or cushioned.
 bool Simulation::Parts::contacts_object(const Marcher::Outcome& outcome, double step,
                                         double& target) {
-  const bool impact = outcome.converged && outcome.touched && cushioned == 0;
-  if (!outcome.leapt && !impact) return false;
+  const bool impact = outcome.converged && cushioned == 0 &&
+                      (outcome.touched || gain(t + step, outcome) > kMostGain);
+  // long steps are for flight
+  const bool far = outcome.converged && outcome.touched && plan.adaptive &&
+                   step > scene.max_step_size * (1 + 1e-9);
+  if (!outcome.leapt && !impact && !far) return false;
   marcher.reject();
   ++statistics.rejected;
-  if (outcome.leapt) {
+  if (outcome.leapt || far) {
     target = 0.5 * step;
     return true;
   }
@@ -64,15 +74,14 @@ bool Simulation::Parts::contacts_object(const Marcher::Outcome& outcome, double 
   return true;
 }
 
-/// Whether a step would make more energy than has been about so far: a point that had
-/// sunk between two places where contact is held, and is put back in too short a time.
-bool Simulation::Parts::throws(double t_new, const Marcher::Outcome& outcome) const {
-  if (!contacts.touching() && cushioned == 0) return false;
+/// How much energy a step would make, over what has been about so far.
+double Simulation::Parts::gain(double t_new, const Marcher::Outcome& outcome) const {
+  if (!contacts.touching() && cushioned == 0) return 0;
   EnergyLedger trial = ledger;
   const EnergySample old = trial.sample();
   trial.close_step(t_new, outcome.damping_loss, outcome.drive_work, cushioned > 0);
   const double known = old.kinetic + old.elastic + old.dissipated + std::abs(old.work);
-  return known > 0 && trial.sample().balance - old.balance > known;
+  return known > 0 ? (trial.sample().balance - old.balance) / known : 0;
 }
 
 void Simulation::Parts::step_dynamic() {
@@ -80,11 +89,11 @@ void Simulation::Parts::step_dynamic() {
   const double stop = next_break();
   ledger.begin_step(t);
   double target = h;
-  if (plan.adaptive && (free_bodies || contacts.touching()))
+  if (plan.adaptive && (free_bodies || contacts.touching() || cushioned > 0))
     target = std::min(target, scene.max_step_size);
   // Backward Euler from a distance, once: points that chatter in short steps settle in a longer
   // one.
-  bool rescued = false;
+  bool rescued = false, lagged = false;
   const auto rescue = [&](double& to) {
     rescued = true;
     marcher.cushion(true);
@@ -105,7 +114,7 @@ void Simulation::Parts::step_dynamic() {
            "a rod would pass through an obstacle at t = " + short_number(t) + " s");
       return;
     }
-    if (outcome.converged && throws(t + step, outcome)) {
+    if (outcome.converged && gain(t + step, outcome) > 1) {
       marcher.reject();
       report = outcome.report;
       if (rescued) {
@@ -126,6 +135,7 @@ void Simulation::Parts::step_dynamic() {
         last_error = outcome.error;
       }
       arrive(landed ? stop : t + step, step, outcome);
+      contacts.lag_friction(false);
       if (cushioned > 0) soften(outcome.touched);
       if (landed && t < end) {
         marcher.restart();
@@ -145,12 +155,20 @@ void Simulation::Parts::step_dynamic() {
     report = outcome.report;
     // what is asked for is that many retries below the step that a scene with a fixed one takes
     if (plan.adaptive && step > scene.max_step_size) failures = -1;
+    // where Coulomb's law finds no rest
+    if (!outcome.converged && cushioned > 0 && !lagged && contacts.any()) {
+      lagged = true;
+      contacts.lag_friction(true);
+      --failures;
+      continue;
+    }
     if (failures >= retries && contacts.any() && !rescued) {
       rescue(target);
       failures = -1;
       continue;
     }
-    if (failures >= retries || target <= 1e-12 * std::max(1.0, end)) {
+    if (failures >= (rescued ? retries + kRescueRetries : retries) ||
+        target <= 1e-12 * std::max(1.0, end)) {
       fail("step failed at t = " + short_number(t) + " s with a step of " + short_number(step) +
            " s");
       return;

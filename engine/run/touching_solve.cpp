@@ -20,6 +20,8 @@ void add(SolveReport& total, const SolveReport& part) {
 
 SolveReport settle_contacts(RodContacts& contacts, Problem& problem, const SolveOptions& options,
                             SolveReport first) {
+  constexpr int kMostHeld = 3;
+  int held = 0;
   for (int round = 0; first.converged() && contacts.revise(round); ++round) {
     if (round == RodContacts::kMostRounds) {
       first.status = SolveStatus::kStalled;
@@ -27,6 +29,15 @@ SolveReport settle_contacts(RodContacts& contacts, Problem& problem, const Solve
       return first;
     }
     add(first, newton(problem, options));
+    if (!first.converged() && contacts.ease()) {
+      SolveOptions bold = options;
+      bold.bold = true;
+      add(first, newton(problem, bold));
+    }
+    if (!first.converged() && held < kMostHeld && contacts.hold()) {
+      ++held;
+      add(first, newton(problem, options));
+    }
   }
   return first;
 }

@@ -90,6 +90,13 @@ Moved newton_step(Problem& problem, ProblemResidual& r) {
   return backtrack(problem, r, full) ? Moved::kOnce : Moved::kNo;
 }
 
+Moved full_step(Problem& problem, ProblemResidual& r) {
+  problem.keep();
+  problem.move(1);
+  r = problem.evaluate();
+  return Moved::kOnce;
+}
+
 void polish(Problem& problem, const SolveOptions& options, SolveReport& report,
             ProblemResidual& r) {
   if (!problem.find_direction(0)) return;
@@ -154,7 +161,7 @@ SolveReport newton(Problem& problem, const SolveOptions& options) {
     if (!problem.find_direction(0))
       return finish(report, problem, before, r, SolveStatus::kSingular);
     ++report.iterations;
-    const Moved moved = newton_step(problem, r);
+    const Moved moved = options.bold ? full_step(problem, r) : newton_step(problem, r);
     if (moved == Moved::kTwice) ++report.iterations;
     report.history.push_back(r.largest);
     if (moved == Moved::kNo) return finish(report, problem, before, r, SolveStatus::kStalled);

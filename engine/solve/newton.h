@@ -15,6 +15,9 @@ struct SolveOptions {
   /// One full step even from a guess that meets the tolerance already, kept if it still does: in
   /// time steps the error of accepted guesses would add up.
   bool polish = false;
+  /// newton() takes full steps whatever they do to the merit: past kinks, at which a merit that
+  /// must fall stops.
+  bool bold = false;
   /// relaxation() begins assembled and under full load, from a displaced equilibrium.
   bool assembled = false;
 };

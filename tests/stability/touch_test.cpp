@@ -36,7 +36,8 @@ TEST(Touch, ARodLiesStillOnAFloor) {
   measure("drift / L", drift, 1e-6);
 }
 
-// N22: nothing asks for short steps while a rod falls; the one that meets the floor begins far above.
+// N22: nothing asks for short steps while a rod falls; the one that meets the floor begins far
+// above.
 TEST(Touch, ARodFallsOntoAFloorInALongStep) {
   Scene scene = contact_scene("rod_on_floor");
   const double radius = 0.001, height = 0.3;
@@ -74,6 +75,55 @@ TEST(Touch, AThinSheetStopsAFastRod) {
   // the sheet's top is at 0.05 mm
   measure("depth / r", (0.00105 - lowest) / 0.001, 1e-3);
   measure("energy gained, J", gain, 1e-6);
+}
+
+/// What a soft rope's fall leaves: see falling_rope.xml.
+struct Fall {
+  double gain = 0;   ///< most energy made in one step, over what it fell with
+  double depth = 0;  ///< deepest, m
+};
+
+Fall fall(int cells, double pitch, double modulus, double mu) {
+  Scene scene = contact_scene("falling_rope");
+  scene.solver.points = cells;
+  scene.rods[0].base.at.X_BF = {exp_so3(Vec3(0, pitch, 0)), Vec3(0, 0, 0.3)};
+  scene.rods[0].material->youngs_modulus = modulus;
+  scene.rods[0].material->shear_modulus = 0.4 * modulus;
+  scene.rods[0].surface.friction = mu;
+  scene.effects.set(Effect::kFriction, mu > 0);
+  Simulation simulation(scene);
+  simulation.start();
+  Fall out;
+  const double fallen = 1000 * 0.4 * 5.03e-5 * 9.81 * 0.3;  // J
+  double balance = 0;
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    const Snapshot& now = simulation.now();
+    out.gain = std::max(out.gain, (now.energy.balance - balance) / fallen);
+    balance = now.energy.balance;
+    out.depth = std::max(out.depth, now.contact.penetration);
+  }
+  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
+  return out;
+}
+
+// Whatever its stiffness, friction, grid and slope, with steps that the scheme chooses.
+TEST(Touch, ASoftRopeWhipsOntoAFloor) {
+  struct Case {
+    int cells;
+    double pitch, modulus, mu;
+  };
+
+  double gain = 0, depth = 0;
+  for (const Case& c : {Case{4, 0.7, 5e6, 0.3}, Case{8, 1.2, 1e6, 1}, Case{12, 0.7, 5e6, 1},
+                        Case{12, 0.3, 1e7, 0.3}, Case{24, 1.2, 5e6, 0.3}, Case{24, 1.5, 5e6, 1},
+                        Case{24, 0, 1e7, 0}, Case{48, 1.5, 1e9, 0.3}, Case{40, 1.2, 5e6, 0}}) {
+    const Fall found = fall(c.cells, c.pitch, c.modulus, c.mu);
+    gain = std::max(gain, found.gain);
+    if (c.cells >= 12) depth = std::max(depth, found.depth);
+  }
+  measure("energy gained in a step / m g h", gain, 1e-3);
+  measure("depth / r, 12 cells and more", depth / 0.004, 0.3);
 }
 
 /// The force of crossing.xml at its end, the upper rod turned by `angle`.

@@ -111,5 +111,79 @@ TEST(ContactDirection, IsExactAcrossSegments) {
     EXPECT_LT(slope_error(grip, true, 1. / 1000, 1), kSlopeTolerance) << static_cast<int>(grip);
 }
 
+/// Largest error of the derivatives of grip_rows() by gap, n, u and f, over the largest of them.
+double rows_error(const RodContact& contact, const Vec3& u) {
+  const ContactScale scale{0.4, 2.0, 3.0, 1e-3};
+  const double gap = -2e-3;
+  const Vec3 n = Vec3(0.3, -0.2, 0.9).normalized();
+  const GripRows rows = grip_rows(contact, gap, n, u, scale);
+  const auto at = [&](double by_gap, const Vec3& by_n, const Vec3& by_u, const Vec3& by_force) {
+    RodContact moved = contact;
+    moved.force += by_force;
+    return grip_rows(moved, gap + by_gap, n + by_n, u + by_u, scale).value;
+  };
+  constexpr double kStep = 1e-6;
+  double error = 0, largest = 0;
+  const auto compare = [&](const Vec3& found, const Vec3& plus, const Vec3& minus) {
+    error = std::max(error, (found - (plus - minus) / (2 * kStep)).norm());
+    largest = std::max(largest, found.norm());
+  };
+  const Vec3 none = Vec3::Zero();
+  compare(rows.by_gap, at(kStep, none, none, none), at(-kStep, none, none, none));
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 e = kStep * Vec3::Unit(i);
+    compare(rows.by_n.col(i), at(0, e, none, none), at(0, -e, none, none));
+    compare(rows.by_u.col(i), at(0, none, e, none), at(0, none, -e, none));
+    compare(rows.by_force.col(i), at(0, none, none, e), at(0, none, none, -e));
+  }
+  return error / largest;
+}
+
+// Slipping, at rest within the cone, pulling, and with friction bounded beforehand.
+TEST(ContactDirection, IsExactOnEveryBranchOfFriction) {
+  Numbers numbers(5);
+  RodContact contact = contact_at(1, 0, Grip::kSlip, numbers);
+  contact.axis = Vec3(0.8, 0.6, 0);
+  const Vec3 slow(0.02, -0.01, 0.03), fast(2, -1, 0.5);
+
+  struct Case {
+    Vec3 force;
+    double friction, bound;
+    Vec3 slip;
+  };
+
+  for (const Case& c : {Case{{1, 0.5, 2}, 0.4, -1, fast}, Case{{0.1, 0.2, 3}, 0.9, -1, slow},
+                        Case{{0.3, 0.5, -2}, 0.4, -1, fast}, Case{{1, 0.5, 2}, 0.4, 0.3, fast},
+                        Case{{0.2, 0.1, 2}, 0.4, 5, slow}, Case{{0.3, 0.5, -2}, 0.4, 0.3, fast}}) {
+    contact.force = c.force;
+    contact.friction = c.friction;
+    contact.bound = c.bound;
+    contact.may_rest = true;
+    contact.held = 0.9 * c.force;
+    EXPECT_LT(rows_error(contact, c.slip), 1e-8) << c.force.transpose() << ", " << c.bound;
+  }
+}
+
+// Neither between slip and rest nor where pressure ends do the rows jump.
+TEST(ContactDirection, IsOfRowsWithoutJumps) {
+  Numbers numbers(5);
+  RodContact contact = contact_at(1, 0, Grip::kSlip, numbers);
+  contact.held.setZero();
+  contact.may_rest = true;
+  const ContactScale scale{0.4, 2.0, 3.0, 0};
+  const Vec3 n = Vec3::UnitZ();
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i <= 4000; ++i) {
+    // from a pull to a pressure under which it rests
+    contact.force = Vec3(0.5, 0, -1 + i * 1e-3);
+    if (contact.force.z() <= 0) contact.force.x() = 0;
+    const Vec3 value = grip_rows(contact, 0, n, Vec3(-0.3, 0, 0), scale).value;
+    if (i > 0 && i != 1001) {
+      EXPECT_LT((value - before).norm(), 1e-3) << contact.force.transpose();
+    }
+    before = value;
+  }
+}
+
 }  // namespace
 }  // namespace cprsim
