@@ -69,7 +69,7 @@ class RodContacts {
   void begin_stage(double since);
 
   /// From the next step on friction is bounded by what pressed when the step began, and what comes
-  /// is smooth: no less dissipative than Coulomb's law, and always soluble.
+  /// is smooth: no less dissipative than Coulomb's law, and easier to solve.
   void lag_friction(bool on) { lagged_ = on; }
 
   void set_recovery_time(double time) { recovery_ = time; }
