@@ -148,6 +148,7 @@ void Marcher::keep(double time) {
   past_.push_back({time, equations_.unknowns()});
   while (past_.size() > kPastKept)
     past_.pop_front();
+  loss_ = loss_after_ = -1;
 }
 
 std::vector<TrackError> Marcher::track_errors() const {
