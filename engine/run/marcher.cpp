@@ -170,7 +170,8 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
   Outcome out;
   h_ = h;
   start_ = equations_.unknowns();
-  contacts_.begin_step();
+  const bool touchable = contacts_.any();
+  if (touchable) contacts_.begin_step();
   if (past_.empty()) past_.push_back({t, start_});
   past_accepted_ = past_.size();
   const int stages = stepper_.begin_step(h, tracks_);
@@ -181,7 +182,7 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     const double time = t + stepper_.stage_time(i) * h;
     // the end of a step may be a jump: the step itself sees what was before
     equations_.set_instant(time, true, rates_);
-    contacts_.begin_stage(time - t);
+    if (touchable) contacts_.begin_stage(time - t);
     SolveReport report = solve_stage(time);
     report.iterations += out.report.iterations;
     report.evaluations += out.report.evaluations;
@@ -190,14 +191,14 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     out.report = report;
     if (!report.converged()) return out;
     finish_stage(i);
-    out.touched = out.touched || contacts_.changed();
+    out.touched = out.touched || (touchable && contacts_.changed());
     past_.push_back({time, equations_.unknowns()});
     losses.push_back(ledger.damping_power());
     works.push_back(ledger.drive_power(time, true));
   }
   out.converged = true;
   loss_after_ = losses.back();
-  out.leapt = contacts_.leapt();
+  out.leapt = touchable && contacts_.leapt();
   out.error = error_estimate();
   out.damping_loss = stepper_.integrate(losses) * h;
   out.drive_work = stepper_.integrate(works) * h;
