@@ -45,8 +45,9 @@ std::vector<std::size_t> nodes_at(const std::vector<double>& grid,
 }
 
 int wanted_segments(double growth_exponent, int cells, int now) {
-  const int wanted =
-      std::clamp(static_cast<int>(std::ceil(growth_exponent / kSegmentGrowth)), 1, cells);
+  // of a state that makes no sense the exponent may be any number, or none
+  const double asked = std::ceil(growth_exponent / kSegmentGrowth);
+  const int wanted = !(asked < cells) ? cells : asked > 1 ? static_cast<int>(asked) : 1;
   return wanted < now && 2 * wanted > now ? now : wanted;
 }
 
