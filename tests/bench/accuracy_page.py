@@ -30,12 +30,12 @@ SCENES = [
      "The six-rod robot of the literature in one equilibrium, found from straight rods."),
     ("scenes/rods/tapered.xml", [],
      "A cantilever at rest, thinner towards its tip."),
-    ("scenes/fluid/released_rod_in_water.xml", ["--duration", "0.5", "--quick"],
-     "A rod let go under water, where drag and the water that moves along damp it."),
-    ("scenes/tendons/till_tendon_dynamics.xml", ["--duration", "0.2", "--quick"],
-     "A tendon robot of the literature whose tendons are let go."),
+    ("scenes/fluid/sinking_rod.xml", ["--duration", "0.3", "--quick"],
+     "A rod that nothing holds sinks in water, lying across its way."),
+    ("scenes/tendons/till_tendon_dynamics.xml", ["--duration", "1", "--quick"],
+     "A tendon robot of the literature: a motor pulls in its tendon, and gives it back."),
     ("scenes/contact/over_a_cylinder.xml", ["--quick"],
-     "A rod that is bent over a cylinder: contact on the way to equilibrium."),
+     "The clamp of a level rod is raised against a cylinder that holds the rod down, one equilibrium after the other."),
 ]
 
 PREFACE = """# What accuracy costs
