@@ -43,15 +43,24 @@ void Simulation::measure(PhaseClock* clock) {
 }
 
 bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
-  const auto begin = Clock::now();
+  const auto begin_time = Clock::now();
   const bool equilibrium =
       scene.simulation.mode != Mode::kDynamic || scene.simulation.initial_static;
   const bool near = neighbour && equilibrium && !free_only() && follow(*neighbour);
   if (!near && !free_only() &&
       (!(equilibrium ? find_equilibrium() : assemble()) || !starts_clear())) {
-    observe(0, seconds_since(begin));
+    observe(0, seconds_since(begin_time));
     return false;
   }
+  begin();
+  statistics.start_seconds = seconds_since(begin_time);
+  observe(0, statistics.start_seconds);
+  before = now;
+  return near;
+}
+
+/// The initial shape is found: from here on time runs.
+void Simulation::Parts::begin() {
   if (!free_only()) start_motion();
   // equilibria at the start know no friction: which of many would it be?
   if (scene.simulation.mode != Mode::kStatic)
@@ -60,12 +69,8 @@ bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
   statistics.start_iterations = std::exchange(statistics.iterations, 0);
   statistics.max_iterations = 0;
   ledger.open();
-  statistics.start_seconds = seconds_since(begin);
-  observe(0, statistics.start_seconds);
-  before = now;
   started = true;
   if (end <= 0) status = RunStatus::kDone;
-  return near;
 }
 
 const SolveReport& Simulation::start() {
@@ -77,6 +82,23 @@ const SolveReport& Simulation::start_near(const RobotUnknowns& neighbour, bool* 
   const bool near = parts_->start(&neighbour);
   if (followed != nullptr) *followed = near;
   return parts_->report;
+}
+
+bool Simulation::start_beside(const RobotUnknowns& neighbour) {
+  Parts& p = *parts_;
+  const RobotUnknowns own = p.equations.unknowns();
+  if (!p.move_beside(neighbour)) {
+    p.equations.set_unknowns(own);
+    return false;
+  }
+  p.begin();
+  p.observe(0, 0);
+  p.before = p.now;
+  return true;
+}
+
+void Simulation::retrace(std::vector<double> instants) {
+  parts_->course = std::move(instants);
 }
 
 std::shared_ptr<const RobotUnknowns> Simulation::unknowns() const {

@@ -101,6 +101,19 @@ class Simulation {
   /// as start(); `followed` says which.
   const SolveReport& start_near(const RobotUnknowns& neighbour, bool* followed = nullptr);
 
+  /// The same, moved to first order only: one Newton step from the neighbour's equilibrium, with
+  /// this robot's own Jacobian. Half the difference of two, at p + h and p - h, over h is the
+  /// derivative of the equilibrium by the implicit function theorem, to second order in h.
+  /// @pre a scene that starts in equilibrium
+  /// @return false if the robot is another one or the equilibrium singular: start as start() does
+  bool start_beside(const RobotUnknowns& neighbour);
+
+  /// From here on steps end at these ascending instants, whatever their estimated errors: the
+  /// course of another run of a robot with slightly other numbers, whose answer then differs
+  /// smoothly (internal numerical differentiation, Bock, Bonner Math. Schriften 183, 1987). Steps
+  /// that fail are still halved, and jumps met. For schemes of this engine, not ida's.
+  void retrace(std::vector<double> instants);
+
   /// All unknowns as they now are, for start_near() of another simulation.
   std::shared_ptr<const RobotUnknowns> unknowns() const;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -46,6 +47,7 @@ struct Simulation::Parts {
   double last_error = 0;
   int cushioned = 0;  ///< steps of backward Euler still to take after a contact changed
   std::vector<double> breaks;
+  std::vector<double> course;  ///< instants that another run's steps ended at; empty: none
   std::string failure;
   Failure failure_kind = Failure::kNone;
   bool started = false;
@@ -126,6 +128,18 @@ struct Simulation::Parts {
     return report.converged();
   }
 
+  /// One Newton step from the unknowns of a like robot.
+  bool move_beside(const RobotUnknowns& neighbour) {
+    if (!alike(equations.unknowns(), neighbour)) return false;
+    equations.set_instant(t, true, StageRates{});
+    equations.set_unknowns(neighbour);
+    equations.evaluate();
+    if (!equations.find_direction(0)) return false;
+    equations.keep();
+    equations.move(1);
+    return equations.evaluate().finite;
+  }
+
   void add_rod_contacts(ContactSample& sample) {
     const ContactSample rods = contacts.sample();
     sample.count += rods.count;
@@ -147,6 +161,7 @@ struct Simulation::Parts {
 
   /// @return whether the neighbour's equilibrium could be followed
   bool start(const RobotUnknowns* neighbour);
+  void begin();
 
   /// Rods find their unloaded shape between bodies that stay where the scene puts them.
   bool assemble() {
@@ -184,6 +199,12 @@ struct Simulation::Parts {
         rod.model->start_tracks();
     }
     marcher.begin();
+  }
+
+  /// Where the course that is retraced goes next; infinity where there is none.
+  double next_of_course() const {
+    const auto at = std::upper_bound(course.begin(), course.end(), t * (1 + 1e-12) + 1e-15);
+    return at == course.end() ? std::numeric_limits<double>::infinity() : *at;
   }
 
   /// The next instant at which something jumps, or the end.

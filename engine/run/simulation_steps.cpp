@@ -86,10 +86,12 @@ double Simulation::Parts::gain(double t_new, const Marcher::Outcome& outcome) co
 
 void Simulation::Parts::step_dynamic() {
   const int retries = scene.solver.halve_on_failure ? scene.solver.retries : 0;
+  const double on_course = next_of_course();
+  const bool retraces = std::isfinite(on_course);
   const double stop = next_break();
   ledger.begin_step(t);
-  double target = h;
-  if (plan.adaptive && (free_bodies || contacts.touching() || cushioned > 0))
+  double target = retraces ? on_course - t : h;
+  if (!retraces && plan.adaptive && (free_bodies || contacts.touching() || cushioned > 0))
     target = std::min(target, scene.max_step_size);
   // Backward Euler from a distance, once: points that chatter in short steps settle in a longer
   // one.
@@ -105,7 +107,7 @@ void Simulation::Parts::step_dynamic() {
     const double left = stop - t;
     // land on the break; in adaptive mode without leaving a sliver
     double step = target >= left * (1 - 1e-9) ? left : target;
-    if (plan.adaptive && step < left && left < 2 * step) step = 0.5 * left;
+    if (plan.adaptive && !retraces && step < left && left < 2 * step) step = 0.5 * left;
     const Marcher::Outcome outcome = marcher.attempt(t, step, ledger);
     if (contacts_object(outcome, step, target)) {
       failures = -1;
@@ -127,14 +129,16 @@ void Simulation::Parts::step_dynamic() {
       failures = -1;
       continue;
     }
-    if (outcome.converged && (!plan.adaptive || outcome.error <= plan.tolerance)) {
+    const bool accurate = !plan.adaptive || retraces || outcome.error <= plan.tolerance;
+    if (outcome.converged && accurate) {
       const bool landed = step == left;
       if (plan.adaptive && cushioned == 0) {
         const double next = controlled(step, outcome.error);
         h = landed && step < 0.5 * target ? std::max(target, next) : next;
         last_error = outcome.error;
       }
-      arrive(landed ? stop : t + step, step, outcome);
+      const double there = retraces && step == on_course - t ? on_course : t + step;
+      arrive(landed ? stop : there, step, outcome);
       contacts.lag_friction(false);
       if (cushioned > 0) soften(outcome.touched);
       if (landed && t < end) {

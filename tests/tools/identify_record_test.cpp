@@ -11,6 +11,7 @@
 #include "scenes/loader/load.h"
 #include "tests/tools/identify_fixture.h"
 #include "tools/cprsim/build_simulation.h"
+#include "tools/cprsim/identify_model.h"
 
 namespace cprsim {
 namespace {
@@ -100,6 +101,32 @@ TEST_F(ReleasedRod, GivesBackStiffnessAndDampingAsOftenAsItPromises) {
   // chi-square with 40 degrees of freedom: 17.9 and 73.4 bound all but a thousandth on either side
   EXPECT_GT(squares, 17.9);
   EXPECT_LT(squares, 73.4);
+}
+
+// Steps that adapt would jump between the two runs of a difference, by about their tolerance.
+TEST_F(ReleasedRod, DifferentiatesStepsThatAdaptAsExactlyAsFixedOnes) {
+  spill(folder_ / "record.csv", record(1));
+  for (const Words& more : {Words{}, Words{"--step", "0.002"}}) {
+    Words words{kReleased,    path("record.csv"),
+                "--fit",      kStiffness + "=190e9:150e9:250e9",
+                "--duration", "0.15",
+                "-qq",        "--no-plot"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto options = parse_identify_options(words);
+    const auto study = prepare_study(std::get<IdentifyOptions>(options), Console({}));
+    ASSERT_TRUE(std::holds_alternative<Study>(study));
+    SceneFit model(std::get<Study>(study));
+    EXPECT_FALSE(model.chooses_steps());
+    VecX r;
+    ASSERT_TRUE(model.residuals(model.start(), r)) << model.failure();
+    MatX fine, middle, coarse;
+    ASSERT_TRUE(model.derivative(model.start(), r, model.step(), fine));
+    ASSERT_TRUE(model.derivative(model.start(), r, 2e-3, middle));
+    ASSERT_TRUE(model.derivative(model.start(), r, 4e-3, coarse));
+    EXPECT_NEAR((coarse - fine).norm() / (middle - fine).norm(), 4, 0.2);
+    // what is left of a difference of second order where nothing jumps
+    EXPECT_LT((middle - fine).norm(), 1e-5 * fine.norm());
+  }
 }
 
 TEST_F(ReleasedRod, TakesSigmasAsGivenAndDoubtsThemIfTheyAreTooSmall) {

@@ -99,9 +99,9 @@ TEST_F(Identify, DifferentiatesThroughTheSolver) {
     const double k = curvature(moment, kE);
     const double dx = tip_x(k) - kLength * std::sin(k * kLength);
     const double dz = tip_z(k) - kLength * std::cos(k * kLength);
-    // differences with steps of 1e-4: truncation of about 1e-8, rounding of about 1e-12 / 1e-4
-    EXPECT_NEAR(J(row++, 0), dx, 3e-8 * kLength);
-    EXPECT_NEAR(J(row++, 0), dz, 3e-8 * kLength);
+    // single Newton steps of 1e-5: truncation of about 1e-10, rounding of about 1e-14 / 1e-5
+    EXPECT_NEAR(J(row++, 0), dx, 1e-9 * kLength);
+    EXPECT_NEAR(J(row++, 0), dz, 1e-9 * kLength);
   }
 }
 

@@ -16,20 +16,16 @@ namespace cprsim {
 
 namespace {
 
-// Differences of equilibria and of runs with fixed steps are smooth to rounding.
-constexpr double kSmoothStep = 1e-4;
+// Equilibria are linearised, and runs along one course of steps smooth to rounding.
+constexpr double kEquilibriumStep = 1e-5, kCourseStep = 1e-4;
 
-// Steps that adapt do so in jumps, each of which moves the answer by about the tolerance.
-constexpr double kAdaptiveStep = 1e-3;
-
-bool adapts_steps(const Scene& scene) {
-  return adapts(scene.solver.scheme.value_or(SchemeKind::kEsdirk32)) && !scene.solver.step;
-}
+// Where steps are chosen anew, each choice moves the answer by about the tolerance.
+constexpr double kChosenStep = 1e-3;
 
 }  // namespace
 
 SceneFit::SceneFit(const Study& study)
-    : study_(study), step_(kSmoothStep), centre_(study.rows.size()), last_(study.rows.size()) {
+    : study_(study), step_(kEquilibriumStep), centre_(study.rows.size()), last_(study.rows.size()) {
   const auto n = static_cast<Eigen::Index>(study.values.size());
   low_.resize(n);
   high_.resize(n);
@@ -38,10 +34,13 @@ SceneFit::SceneFit(const Study& study)
     low_[j] = std::isfinite(p.low) ? p.coordinate(p.low) : -1e300;
     high_[j] = std::isfinite(p.high) ? p.coordinate(p.high) : 1e300;
   }
-  if (study.dynamic()) {
-    const auto scene = scene_at(start(), study.rows.front());
-    if (scene && adapts_steps(*scene)) step_ = kAdaptiveStep;
-  }
+  if (!study.dynamic()) return;
+  // ida's steps are its own, and what touches decides anew
+  const auto scene = scene_at(start(), study.rows.front());
+  chooses_steps_ =
+      scene && (scene->solver.scheme == SchemeKind::kIda || scene->effects.has(Effect::kContact) ||
+                scene->effects.has(Effect::kSelfContact));
+  step_ = chooses_steps_ ? kChosenStep : kCourseStep;
 }
 
 VecX SceneFit::start() const {
@@ -96,19 +95,36 @@ std::unique_ptr<Simulation> SceneFit::simulate(const Scene& scene, const State& 
   return simulation;
 }
 
+/// The derivative's run: from the equilibrium at z to first order, then along the course of z.
+std::unique_ptr<Simulation> SceneFit::simulate_beside(const Scene& scene, const State& near) {
+  const bool equilibrium =
+      scene.simulation.mode != Mode::kDynamic || scene.simulation.initial_static;
+  auto simulation = build_simulation(scene);
+  ++simulations_;
+  if (equilibrium && near && simulation->start_beside(*near)) {
+    if (!chooses_steps_) simulation->retrace(course_);
+    return simulation;
+  }
+  bool followed = false;
+  simulation = simulate(scene, near, followed);
+  if (!chooses_steps_) simulation->retrace(course_);
+  return simulation;
+}
+
 bool SceneFit::solve_row(const VecX& z, std::size_t k, std::size_t& cell, VecX& computed) {
   const std::size_t row = study_.rows[k];
   const auto scene = scene_at(z, row);
   if (!scene) return false;
   bool followed = false;
-  auto simulation = simulate(*scene, centre_[k], followed);
-  if (!followed && simulation->status() != RunStatus::kFailed) {
+  auto simulation =
+      beside_ ? simulate_beside(*scene, last_[k]) : simulate(*scene, centre_[k], followed);
+  if (!beside_ && !followed && simulation->status() != RunStatus::kFailed) {
     // sought from the scene's own start: once more from there, for the extra step
     restarts_ += centre_[k] ? 1 : 0;
     simulation = simulate(*scene, simulation->unknowns(), followed);
   }
   if (simulation->status() == RunStatus::kFailed) return refuse(row, simulation->failure());
-  last_[k] = simulation->unknowns();
+  if (!beside_) last_[k] = simulation->unknowns();
   for (; cell < study_.cells.size() && study_.cells[cell].row == row; ++cell) {
     const Channel& channel = study_.matches[study_.cells[cell].match].channel;
     computed[static_cast<Eigen::Index>(cell)] = evaluate(channel, *scene, simulation->now());
@@ -127,10 +143,12 @@ bool SceneFit::run_record(const VecX& z, VecX& computed) {
   const auto scene = scene_at(z, study_.rows.front());
   if (!scene) return false;
   bool followed = false;
-  const auto simulation = simulate(*scene, centre_.front(), followed);
+  const auto simulation = beside_ ? simulate_beside(*scene, last_.front())
+                                  : simulate(*scene, centre_.front(), followed);
   if (simulation->status() == RunStatus::kFailed)
     return refuse(study_.rows.front(), simulation->failure());
-  last_.front() = simulation->unknowns();
+  std::vector<double> course;
+  State first = beside_ ? last_.front() : simulation->unknowns();
   std::vector<Channel> channels;
   for (const MatchedColumn& match : study_.matches)
     channels.push_back(match.channel);
@@ -139,8 +157,10 @@ bool SceneFit::run_record(const VecX& z, VecX& computed) {
   const double end = simulation->end_time();
   while (cell < study_.cells.size()) {
     const double t = std::min(study_.times[study_.cells[cell].row], end);
-    while (simulation->time() < t && simulation->status() == RunStatus::kRunning)
+    while (simulation->time() < t && simulation->status() == RunStatus::kRunning) {
       simulation->advance();
+      course.push_back(simulation->time());
+    }
     if (simulation->time() < t) return refuse(study_.rows.front(), simulation->failure());
     const std::vector<double>& values =
         reader.read(interpolate(simulation->before(), simulation->now(), t));
@@ -148,26 +168,34 @@ bool SceneFit::run_record(const VecX& z, VecX& computed) {
          cell < study_.cells.size() && study_.cells[cell].row == row; ++cell)
       computed[static_cast<Eigen::Index>(cell)] = values[study_.cells[cell].match];
   }
+  if (beside_) return true;
+  last_.front() = std::move(first);
+  course_ = std::move(course);
   return true;
 }
 
-bool SceneFit::residuals(const VecX& z, VecX& r) {
-  const std::size_t count = study_.cells.size();
-  VecX values(static_cast<Eigen::Index>(count));
+bool SceneFit::compute(const VecX& z, VecX& computed) {
   try {
-    if (!(study_.dynamic() ? run_record(z, values) : solve_rows(z, values))) return false;
+    return study_.dynamic() ? run_record(z, computed) : solve_rows(z, computed);
   } catch (const std::invalid_argument& error) {
     // what the engine cannot build at all
     scene_refused_ = true;
     return refuse(study_.rows.front(), error.what());
   }
+}
+
+bool SceneFit::residuals(const VecX& z, VecX& r) {
+  const std::size_t count = study_.cells.size();
+  VecX values(static_cast<Eigen::Index>(count));
+  if (!beside_) last_z_.resize(0);  // a search that fails half way leaves solutions of two places
+  if (!compute(z, values)) return false;
   r.resize(values.size());
   for (std::size_t i = 0; i < count; ++i) {
     const double sigma = study_.matches[study_.cells[i].match].sigma.value_or(1);
     const auto k = static_cast<Eigen::Index>(i);
     r[k] = (values[k] - study_.cells[i].value) / sigma;
   }
-  last_z_ = z;
+  if (!beside_) last_z_ = z;
   return true;
 }
 
@@ -181,7 +209,10 @@ bool SceneFit::derivative(const VecX& z, const VecX& r, double step, MatX& J) {
     if (!residuals(z, again)) return false;
   }
   centre_ = last_;
-  return difference_jacobian(*this, z, r, step, low_, high_, J);
+  beside_ = true;
+  const bool found = difference_jacobian(*this, z, r, step, low_, high_, J);
+  beside_ = false;
+  return found;
 }
 
 VecX SceneFit::computed(const VecX& r) const {

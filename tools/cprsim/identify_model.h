@@ -2,10 +2,11 @@
 // The residuals of a study: the scene with trial values, simulated, seen through the matched
 // channels, minus what was measured, in units of sigma (1 where it is to be estimated).
 //
-// Derivatives go through the solver: central differences of converged solutions. An equilibrium
-// is followed from the one at the centre by Newton's method with a step more than the tolerance
-// asks for, so that both ends lie on one branch and are exact to some 1e-12; with steps of 1e-4 in
-// z the differences are then good to about 1e-8.
+// Derivatives go through the solver. That of an equilibrium is the one of the implicit function
+// theorem, dx/dz = -(dF/dx)^-1 dF/dz with the solver's own Jacobian: two single Newton steps from
+// the equilibrium at z, of robots built at z ± h. That of a motion is the derivative of what the
+// steps compute: runs at z ± h that take the steps of the run at z, one for one (internal numerical
+// differentiation), so that no choice of steps stands between them.
 #pragma once
 
 #include <memory>
@@ -35,6 +36,9 @@ class SceneFit final : public LeastSquaresProblem {
 
   const VecX& high() const { return high_; }
 
+  /// Whether runs at z ± h cannot take the steps of the run at z.
+  bool chooses_steps() const { return chooses_steps_; }
+
   VecX start() const;
 
   /// Computed values of all cells from their residuals, SI.
@@ -55,16 +59,21 @@ class SceneFit final : public LeastSquaresProblem {
   using State = std::shared_ptr<const RobotUnknowns>;
 
   std::unique_ptr<Scene> scene_at(const VecX& z, std::size_t row);
+  bool compute(const VecX& z, VecX& computed);
   bool solve_rows(const VecX& z, VecX& computed);
   bool solve_row(const VecX& z, std::size_t k, std::size_t& cell, VecX& computed);
   bool run_record(const VecX& z, VecX& computed);
   bool refuse(std::size_t row, const std::string& why);
   std::unique_ptr<Simulation> simulate(const Scene& scene, const State& near, bool& followed);
+  std::unique_ptr<Simulation> simulate_beside(const Scene& scene, const State& near);
 
   const Study& study_;
   double step_;
+  bool chooses_steps_ = false;
+  bool beside_ = false;  ///< a difference is being taken: close to last_z_, along its solutions
   VecX low_, high_;
   std::vector<State> centre_, last_;  ///< per used row: where the search is, and the last answer
+  std::vector<double> course_;        ///< instants at which the last run's steps ended
   VecX last_z_;
   std::string failure_;
   bool scene_refused_ = false;
