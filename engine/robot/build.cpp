@@ -154,6 +154,7 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.rotary_inertia = has(Effect::kRotaryInertia);
   plan.damping = has(Effect::kDamping) && rod.spec->damping.has_value();
   plan.drag = rod.section.fluid.resists();
+  plan.touches = !plan.plane && (has(Effect::kContact) || has(Effect::kSelfContact));
   plan.line_loads = !rod.line_loads.empty();
   for (const LoadSpec* load : rod.loads)
     plan.stations.push_back(load->rod_s);

@@ -75,6 +75,19 @@ MovingBody moving_body(const RigidBody& body, const StageRates& rates, const Pos
   return out;
 }
 
+PairRows rows_with_world(const RodContact& contact, const Surface& surface, double radius,
+                         const ContactEnds& ends, const ContactScale& scale) {
+  const ContactRows rows = contact_rows(contact, surface, radius, ends, scale);
+  PairRows out;
+  out.value = rows.value;
+  out.by_force = rows.by_force;
+  out.at = rows.at;
+  out.slip = rows.slip;
+  for (int end = 0; end < (contact.at_node() ? 1 : 2); ++end)
+    out.by_ends.middleCols<6>(6 * end) << rows.by_phi[end], rows.by_p[end];
+  return out;
+}
+
 PairRows rows_with_body(const RodContact& contact, const Surface& surface, const MovingBody& body,
                         double radius, const ContactEnds& ends, const ContactScale& scale) {
   PairRows rows;

@@ -44,6 +44,10 @@ struct PairRows {
   Vec3 slip = Vec3::Zero();
 };
 
+/// What stands still, for rods whose forces are the robot's unknowns.
+PairRows rows_with_world(const RodContact& contact, const Surface& surface, double radius,
+                         const ContactEnds& ends, const ContactScale& scale);
+
 /// @param surface with its frame on the body.
 PairRows rows_with_body(const RodContact& contact, const Surface& surface, const MovingBody& body,
                         double radius, const ContactEnds& ends, const ContactScale& scale);

@@ -215,8 +215,10 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
   contact.lever = -rod.radius * distance(rod, obstacle, cell, xi).n;
   contact.axis = tangent(rod, cell, xi);
   contact.sunk = sunk(rod, contact);
-  if (rod.obstacles[obstacle].fixed()) return contact;
+  const bool fixed = rod.obstacles[obstacle].fixed();
+  if (fixed && rod.side->owns_forces()) return contact;
   contact.role = ContactRole::kShared;
+  if (fixed) return contact;
   contact.body = rod.obstacles[obstacle].body;
   // what has passed through another rod within the step is to go back
   const std::size_t last = rod.side->contact_nodes().size() - 2;
@@ -326,7 +328,8 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
   const auto same = [&](const RodContact& contact, std::size_t o) {
     return contact.role != ContactRole::kEcho &&
            (contact.surface == static_cast<int>(o) ||
-            (contact.role == ContactRole::kOwn && rod.obstacles[o].fixed()));
+            (rod.obstacles[static_cast<std::size_t>(contact.surface)].fixed() &&
+             rod.obstacles[o].fixed()));
   };
   const auto beside = [&](std::size_t node, std::size_t o) {
     return std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {

@@ -120,11 +120,12 @@ void RodContacts::add_rods_themselves() {
 void RodContacts::give_surfaces(Rod& rod) {
   if (!rod.side)
     throw std::invalid_argument("rod '" + rod.rod->spec->name +
-                                "' may touch something: only method shooting in space can");
+                                "' may touch something: no method in a plane can, and none but "
+                                "shooting along a rod whose tendons are given by length");
   std::vector<Surface> surfaces;
   for (const Obstacle& obstacle : rod.obstacles) {
     surfaces.push_back(obstacle.surface);
-    robot_.rods_meet = robot_.rods_meet || !obstacle.fixed();
+    robot_.rods_meet = robot_.rods_meet || !obstacle.fixed() || !rod.side->owns_forces();
   }
   rod.side->set_surfaces(surfaces, rod.radius, friction_);
 }

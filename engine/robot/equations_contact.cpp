@@ -81,7 +81,10 @@ void Equations::evaluate_pairs(ProblemResidual& r) {
     own.ends = side.contact_ends(pair.contact);
     own.radius = rod.section.half_width;
     const Vec3 x = contact_point(contact.xi, own.ends.h, own.ends.node);
-    if (contact.body >= 0) {
+    if (contact.body < 0 && contact.other_rod < 0) {
+      const Surface& surface = side.surfaces()[static_cast<std::size_t>(contact.surface)];
+      pair.rows = rows_with_world(contact, surface, own.radius, own.ends, side.contact_scale());
+    } else if (contact.body >= 0) {
       const auto b = static_cast<std::size_t>(contact.body);
       const Surface& surface = side.surfaces()[static_cast<std::size_t>(contact.surface)];
       pair.rows =
@@ -200,6 +203,7 @@ void Equations::assemble_pairs() {
     J_.block<3, 3>(pair.offset, pair.offset) += pair.rows.by_force;
     r_.segment<3>(pair.offset) += pair.rows.value;
     add_rod_terms(pair.offset, pair.rod, {pair.rows.by_ends, own});
+    if (contact.body < 0 && contact.other_rod < 0) continue;
     if (contact.body < 0) {
       const auto other = static_cast<std::size_t>(contact.other_rod);
       add_rod_terms(pair.offset, other,
@@ -262,6 +266,8 @@ std::string Equations::pair_name(const Pair& pair) const {
   const RobotRod& rod = robot_.rods[pair.rod];
   const RodContact& contact = rod.model->touching()->contacts()[pair.contact];
   const Scene& scene = *robot_.scene;
+  if (contact.body < 0 && contact.other_rod < 0)
+    return "contact " + std::to_string(pair.contact + 1) + " of " + rod.spec->name;
   const std::string other =
       contact.body < 0
           ? robot_.rods[static_cast<std::size_t>(contact.other_rod)].spec->name

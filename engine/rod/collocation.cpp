@@ -42,6 +42,7 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   reference_rotations_.assign(points_.size(), Mat3::Identity());
   forcing_.length = length;
   if (!options_.tendons.empty()) place_tendons();
+  if (options_.touches) touch_.reset(new NodalContacts(*this));
   set_unloaded(X_WBase);
 }
 
@@ -71,13 +72,15 @@ void CollocationRod::place_sites(const std::vector<double>& grid) {
   if (options_.along)
     for (std::size_t node : nodes_at(grid, options_.along->breaks()))
       ends.push_back(node);
+  for (std::size_t node = 0; options_.touches && node < grid.size(); ++node)
+    ends.push_back(node);
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (std::size_t node : load_nodes)
     station_of_.push_back(
         static_cast<std::size_t>(std::find(ends.begin(), ends.end(), node) - ends.begin()));
   int controls = 0;
-  const int parts = (kLeastNodes + elements_ - 1) / elements_;
+  const int parts = options_.touches ? 1 : (kLeastNodes + elements_ - 1) / elements_;
   for (std::size_t g = 0; g + 1 < ends.size(); ++g) {
     const std::vector<double> breaks(grid.begin() + static_cast<std::ptrdiff_t>(ends[g]),
                                      grid.begin() + static_cast<std::ptrdiff_t>(ends[g + 1]) + 1);
@@ -96,6 +99,7 @@ void CollocationRod::place_sites(const std::vector<double>& grid) {
         nodes_.push_back(site(g, breaks[e] + (breaks[e + 1] - breaks[e]) * k / parts));
   }
   nodes_.push_back(site(pieces_.size() - 1, 1));
+  if (options_.touches) touch_grid_ = grid;
   control_.assign(static_cast<std::size_t>(controls), Vec13::Zero());
   points_.assign(sites_.size(), CollocationPoint{});
   find_band();
@@ -141,6 +145,7 @@ Vec6 CollocationRod::load_at(std::size_t station, const Mat3& R) const {
     sum.head<3>() += load.follower ? Vec3(R * load.force) : load.force;
     sum.tail<3>() += load.follower ? Vec3(R * load.torque) : load.torque;
   }
+  if (touch_) sum += touch_->load_at(station, R);
   return sum;
 }
 
@@ -153,6 +158,7 @@ Mat6 CollocationRod::load_by_turn(std::size_t station, const Mat3& R) const {
     by_turn.block<3, 3>(0, 0) -= hat(R * load.force);
     by_turn.block<3, 3>(3, 0) -= hat(R * load.torque);
   }
+  if (touch_) by_turn.block<3, 3>(3, 0) += touch_->moment_by_turn(station, R);
   return by_turn;
 }
 
@@ -360,6 +366,10 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
     }
   }
   add(VecX(tip_.value(tip_state(), tip, loose) - tip_gap_));
+  if (touch_) {
+    update_touch_nodes();
+    touch_->begin_rows();
+  }
   if (finds_tensions()) add(tendons_->gaps());
   section_evaluations_ += static_cast<long>(points_.size());
   return r;

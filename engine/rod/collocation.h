@@ -12,6 +12,7 @@
 // that integrates to zero.
 //
 // Where a point load acts n, m jump: a knot of multiplicity p + 1 there, with q, p joined by rows.
+// A rod that may touch something has such knots between all elements: contacts act there.
 // In a plane one turn, two translations and forces and one moment are left: 7 rows a point for 13.
 //
 // Control points are eliminated from the base to the last one (engine/math/banded_elimination.h),
@@ -33,6 +34,7 @@
 #include "engine/rod/collocation_point.h"
 #include "engine/rod/end_wrench.h"
 #include "engine/rod/immersion.h"
+#include "engine/rod/nodal_contacts.h"
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/tendon_border.h"
@@ -48,12 +50,13 @@ struct CollocationOptions {
   bool extension = false, shear = false;      ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
   bool line_loads = false;                     ///< whether there are loads spread along it
+  bool touches = false;                        ///< whether it may touch something
   std::vector<double> stations;                ///< s of point loads
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
-class CollocationRod final : public RodModel, private TensionedRod {
+class CollocationRod final : public RodModel, private TensionedRod, private ContactHost {
  public:
   /// @param plane of a planar scene: e1, e2 and the normal as columns, world. @param X_WBase where
   /// the unloaded rod begins; in a plane its axes may be turned about the tangent.
@@ -103,6 +106,8 @@ class CollocationRod final : public RodModel, private TensionedRod {
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
 
+  TouchingRod* touching() override { return touch_.get(); }
+
   RodResolution resolution() const override {
     return {Method::kCollocation, "B-splines", elements_, options_.degree};
   }
@@ -140,6 +145,34 @@ class CollocationRod final : public RodModel, private TensionedRod {
   void find_direction(const Vec6& z, const Vec6& zeta_A);
   void add_tension(Eigen::Index unknown, bool add) override;
   std::vector<Vec6> strain_rates(const VecX& direction) const override;
+
+  // contact, at the ends of the pieces
+  const std::vector<NodeState>& grid_nodes() const override { return touch_nodes_; }
+
+  const std::vector<double>& node_grid() const override { return touch_grid_; }
+
+  double rod_length() const override { return forcing_.length; }
+
+  const StageRates& stage_rates() const override { return rates_; }
+
+  Vec3 velocity_history(std::size_t node) const override {
+    return track_.x_h.segment<3>(3 * static_cast<Eigen::Index>(points_.size() + node));
+  }
+
+  ContactScale scale_of_contacts() const override;
+
+  /// Of the forces of contacts: dense columns behind the affine one.
+  int force_columns() const { return touch_ ? static_cast<int>(touch_->columns()) : 0; }
+
+  std::size_t control_at(std::size_t node) const {
+    return node < pieces_.size() ? static_cast<std::size_t>(pieces_[node].first_control)
+                                 : control_.size() - 1;
+  }
+
+  void update_touch_nodes();
+  void assemble_contacts(const ConditionRows& base_rows);
+  NodalContacts::ByForces contact_loads(std::size_t node) const;
+  void describe_contacts();
 
   bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
 
@@ -246,12 +279,17 @@ class CollocationRod final : public RodModel, private TensionedRod {
   BandedElimination system_;
   int lower_ = 0, upper_ = 0;  ///< band
   bool base_moves_ = false;
-  MatX last_;  ///< the last control point's (phi, dp, dn, dm) = last_ [z; zeta_A; 1], in units
+  MatX last_;  ///< the last control point's (phi, dp, dn, dm) = last_ [z; zeta_A; 1; F], in units
   std::vector<Vec13> direction_, kept_;
 
   Track track_;
   Track rotation_track_{Track::Kind::kRotation};
   std::vector<Mat3> reference_rotations_;  ///< of the points, at the start of the step
+
+  std::unique_ptr<NodalContacts> touch_;  ///< of a rod that may touch something
+  std::vector<NodeState> touch_nodes_;
+  std::vector<double> touch_grid_;
+
   long section_evaluations_ = 0;
 
   std::unique_ptr<RodTendons> tendons_;  ///< sections: points

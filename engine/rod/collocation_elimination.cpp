@@ -60,6 +60,7 @@ void CollocationRod::assemble_base(const Port& base) {
       system_.dense(r, c) = by_body(r, c);
     system_.dense(r, affine()) = value[r];
   }
+  if (force_columns() > 0) assemble_contacts(rows);
   const double square = control_.front().head<4>().squaredNorm();
   system_.at(d, 0) = 2 * square;
   system_.dense(d, affine()) = square - 1;
@@ -111,7 +112,7 @@ void CollocationRod::find_band() {
 
 void CollocationRod::assemble(const Port& base) {
   const int d = static_cast<int>(space_.freedoms());
-  system_.reset(columns() - d, columns(), lower_, upper_, affine() + 1);
+  system_.reset(columns() - d, columns(), lower_, upper_, affine() + 1 + force_columns());
   assemble_base(base);
   int row = d + 1;
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
@@ -144,21 +145,28 @@ bool CollocationRod::linearize_given(const Port& base, const Port& tip, Condense
   if (!system_.eliminate(columns() - static_cast<int>(2 * d))) return false;
   MatX general;
   if (!general_solution(system_.remaining(), system_.remaining_dense(), general)) return false;
-  last_ = MatX::Zero(2 * d, 2 * d + 1);
+  const int forces = force_columns(), given = affine() + 1 + forces;
+  last_ = MatX::Zero(2 * d, 2 * d + 1 + forces);
   last_.leftCols(d) = general.leftCols(d);
-  last_.rightCols(affine() + 1) = general.rightCols(affine() + 1);
+  last_.rightCols(given) = general.rightCols(given);
 
   const NodeState end = tip_state();
-  const MatX Y = passing(-load_by_turn(pieces_.size(), Mat3(rotation_of(end)))) *
-                 increment_units().tail<12>().asDiagonal() * space_.state * last_;
+  MatX Y = passing(-load_by_turn(pieces_.size(), Mat3(rotation_of(end)))) *
+           increment_units().tail<12>().asDiagonal() * space_.state * last_;
+  OpenPorts* const ports = forces > 0 ? &touch_->ports() : nullptr;
+  if (ports) {
+    Y.bottomRightCorner(6, forces) -= contact_loads(pieces_.size());
+    ports->WA_F.setZero(6, forces);
+  }
   ConditionRows rows = tip_.rows(end, tip, scale_);
   rows.value -= tip_gap_;
-  condense_tip(space_, rows, tip_.held(), end, tip, Y, out);
+  condense_tip(space_, rows, tip_.held(), end, tip, Y, out, ports);
   out.WA_z.setZero();
   out.WA_A.setZero();
   out.wa.setZero();
   const NodeState start = base_state();
-  if (base_moves_) condense_base(space_, start, base, base_columns(start), out);
+  if (base_moves_) condense_base(space_, start, base, base_columns(start), out, ports);
+  if (ports) describe_contacts();
   out.growth = 0;
   return true;
 }
@@ -166,11 +174,14 @@ bool CollocationRod::linearize_given(const Port& base, const Port& tip, Condense
 /// The state before a load at the base, by back-substitution of all columns.
 MatX CollocationRod::base_columns(const NodeState& start) const {
   const Eigen::Index d = space_.freedoms();
-  MatX w = MatX::Zero(d + 1, 2 * d + 1);
-  w.rightCols(d + 1).setIdentity();
-  return passing(load_by_turn(0, Mat3(rotation_of(start)))) *
-         increment_units().tail<12>().asDiagonal() * space_.state *
-         system_.substitute(last_, w).middleRows(1, 2 * d);
+  const Eigen::Index given = d + 1 + force_columns();
+  MatX w = MatX::Zero(given, d + given);
+  w.rightCols(given).setIdentity();
+  MatX Y = passing(load_by_turn(0, Mat3(rotation_of(start)))) *
+           increment_units().tail<12>().asDiagonal() * space_.state *
+           system_.substitute(last_, w).middleRows(1, 2 * d);
+  if (force_columns() > 0) Y.bottomRightCorner(6, force_columns()) += contact_loads(0);
+  return Y;
 }
 
 Vec6 CollocationRod::wrench_on_base(const Port& base) const {
@@ -195,9 +206,10 @@ void CollocationRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
 
 void CollocationRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
   const Eigen::Index d = space_.freedoms();
-  VecX all(2 * d + 1);
-  all << z.head(d), zeta_A.head(d), 1;
-  const MatX x = system_.substitute(last_ * all, all.tail(affine() + 1));
+  const int forces = force_columns();
+  VecX all(2 * d + 1 + forces);
+  all << z.head(d), zeta_A.head(d), 1, forces > 0 ? touch_->direction() : VecX(0);
+  const MatX x = system_.substitute(last_ * all, all.tail(affine() + 1 + forces));
   const Vec13 units = increment_units();
   direction_.resize(control_.size());
   for (std::size_t k = 0; k < control_.size(); ++k)
@@ -207,11 +219,13 @@ void CollocationRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
 
 void CollocationRod::keep() {
   if (finds_tensions()) tendons_->keep();
+  if (touch_) touch_->keep();
   kept_ = control_;
 }
 
 void CollocationRod::move(double alpha) {
   if (finds_tensions()) tendons_->move(alpha, tension_direction_);
+  if (touch_) touch_->move(alpha);
   for (std::size_t k = 0; k < control_.size(); ++k) {
     const Vec13 d = alpha * direction_[k];
     control_[k].head<4>() =

@@ -38,6 +38,7 @@ void CollocationRod::set_turned(const Pose& X_WBase, const std::function<Vec4(do
     for (Eigen::Index k = 0; k < control.rows(); ++k)
       control_[static_cast<std::size_t>(piece.first_control + k)] = control.row(k).transpose();
   }
+  if (touch_) update_touch_nodes();
 }
 
 void CollocationRod::set_unloaded(const Pose& X_WBase) {
@@ -97,10 +98,12 @@ void CollocationRod::mark_positions() {
 std::vector<Track*> CollocationRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
+  if (touch_ && touch_->turns()) all.push_back(touch_->turns());
   return all;
 }
 
 void CollocationRod::fill_tracks() {
+  if (touch_) touch_->fill_turns();
   const auto n = static_cast<Eigen::Index>(points_.size());
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const CollocationPoint& point = points_[j];
@@ -117,6 +120,7 @@ void CollocationRod::fill_tracks() {
 }
 
 void CollocationRod::accept_tracks() {
+  if (touch_) touch_->accept_contacts();
   if (!options_.rotary_inertia) return;
   for (std::size_t j = 0; j < points_.size(); ++j)
     reference_rotations_[j] = points_[j].R;
@@ -130,6 +134,7 @@ void CollocationRod::start_tracks() {
   }
   fill_tracks();
   track_.set_start(track_.x, VecX::Zero(track_.x.size()));
+  if (touch_) touch_->start_turns();
   if (options_.rotary_inertia)
     rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()),
                               VecX::Zero(rotation_track_.x.size()));

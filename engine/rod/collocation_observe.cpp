@@ -20,6 +20,7 @@ RodModel::Unknowns CollocationRod::unknowns() const {
   }
   for (const Site& node : nodes_)
     u.nodes.push_back(state_of(value(node)));
+  if (touch_) u.contacts = touch_->contacts();
   return u;
 }
 
@@ -27,6 +28,9 @@ void CollocationRod::set_unknowns(const Unknowns& u) {
   for (std::size_t k = 0; k < control_.size(); ++k)
     control_[k] = u.values.segment<13>(13 * static_cast<Eigen::Index>(k));
   if (finds_tensions()) tendons_->set_values(u.values.tail(tendons_->unknowns()));
+  if (!touch_) return;
+  touch_->set_contacts(u.contacts);
+  update_touch_nodes();
 }
 
 /// What a plane leaves of an increment of the fields (q, p, n, m) at q.
@@ -57,6 +61,7 @@ void CollocationRod::predict(const std::vector<const Unknowns*>& past,
   const double length = control_.front().head<4>().norm();
   for (Vec13& control : control_)
     control.head<4>() /= length;
+  if (touch_) update_touch_nodes();
 }
 
 void CollocationRod::visit(Archive& archive) {
@@ -150,6 +155,7 @@ RodEnergy CollocationRod::energy() const {
     const Vec3 v_t = track_.v.segment<3>(strain + 3 * n);
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
+  if (touch_) e.damping_power += touch_->friction_power();
   // per unit feed: the base section's traction works on the inflow, which brings strain energy and
   // weight along; the first point is the base
   const CollocationPoint& base = points_.front();

@@ -34,9 +34,9 @@ namespace cprsim {
 
 enum class Grip { kSmooth, kStick, kSlip };
 
-/// Whose unknown the force is: the rod's own, where what it touches stands still; the robot's,
-/// where that moves by unknowns too (engine/robot/contact_pair.h); or what another rod's contact
-/// with this one leaves here, the force with its sign changed.
+/// Whose unknown the force is: the rod's own, where what it touches stands still and its method
+/// can; the robot's, where that moves by unknowns too (engine/robot/contact_pair.h); or what
+/// another rod's contact with this one leaves here, the force with its sign changed.
 enum class ContactRole { kOwn, kShared, kEcho };
 
 /// A solid that a rod may touch.
@@ -168,6 +168,10 @@ class TouchingRod {
 
   /// Whether set_surfaces() was called: nothing below may be asked of it otherwise.
   virtual bool may_touch() const = 0;
+
+  /// Whether forces from what stands still are its own unknowns; otherwise they are the robot's, as
+  /// all others.
+  virtual bool owns_forces() const { return true; }
 
   /// Where it touches now, base to tip, one point at a node or in a cell. May be changed between
   /// solves.

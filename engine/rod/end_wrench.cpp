@@ -40,7 +40,8 @@ Vec6 wrench_on_tip(const MotionSpace& space, const NodeState& end, const Port& t
 }
 
 void condense_tip(const MotionSpace& space, const ConditionRows& rows, bool held,
-                  const NodeState& end, const Port& tip, const MatX& Y, CondensedRod& out) {
+                  const NodeState& end, const Port& tip, const MatX& Y, CondensedRod& out,
+                  OpenPorts* ports) {
   const Eigen::Index d = space.freedoms();
   const MatX T = rows.by_state * Y;
   out.T.topLeftCorner(d, d) = T.leftCols(d);
@@ -57,16 +58,20 @@ void condense_tip(const MotionSpace& space, const ConditionRows& rows, bool held
   out.WB_z.topLeftCorner(d, d) = W.leftCols(d);
   out.WB_A.topLeftCorner(d, d) = W.middleCols(d, d);
   out.wb.head(d) = W.col(2 * d);
+  if (ports == nullptr) return;
+  ports->T_F = T.rightCols(Y.cols() - 2 * d - 1);
+  ports->WB_F = held ? MatX(W.rightCols(ports->T_F.cols())) : MatX::Zero(6, ports->T_F.cols());
 }
 
 void condense_base(const MotionSpace& space, const NodeState& start, const Port& base,
-                   const MatX& Y, CondensedRod& out) {
+                   const MatX& Y, CondensedRod& out, OpenPorts* ports) {
   const Eigen::Index d = space.freedoms();
   const MatX W = space.motion.transpose() * by_state(start, base) * Y;
   out.WA_z.topLeftCorner(d, d) = W.leftCols(d);
   out.WA_A.topLeftCorner(d, d) =
       W.middleCols(d, d) + space.motion.transpose() * by_body(start) * space.motion;
   out.wa.head(d) = W.col(2 * d) + space.motion.transpose() * wrench_on_base(space, start, base);
+  if (ports != nullptr) ports->WA_F = W.rightCols(Y.cols() - 2 * d - 1);
 }
 
 }  // namespace cprsim

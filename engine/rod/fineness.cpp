@@ -28,6 +28,9 @@ constexpr double kSplineError[] = {2.4e-3, 4.5e-6, 7.2e-6, 4.5e-7, 1.5e-7, 2e-9,
 // of ten: ten times less error asked for must not be the same rod again.
 constexpr double kFirstDigits = 1.5, kTurnPerElement = 4;
 
+// Contact is where elements meet: they must be short against what is touched, not of high degree.
+constexpr int kTouchingElements = 20, kTouchingOrder = 3, kTouchingDegree = 4;
+
 Method fitting_method(const SolverSpec& solver, std::string& why) {
   if (solver.points || solver.integrator) {
     why = "auto: <space> is shooting's";
@@ -70,20 +73,24 @@ int shooting_cells(const RodPlan& plan) {
 int strain_order(const RodPlan& plan) {
   const SolverSpec& solver = *plan.solver;
   if (solver.order) return *solver.order;
-  if (!solver.accuracy) return 6;
+  if (!solver.accuracy) return plan.touches ? kTouchingOrder : 6;
   const double digits = std::log10(10 * plan.spec->length / *solver.accuracy);
   return static_cast<int>(std::clamp(std::ceil(digits - kFirstDigits), 3.0, 16.0));
 }
 
 int strain_elements(const RodPlan& plan) {
   const int wound = static_cast<int>(std::min(std::ceil(turn_of(plan) / kTurnPerElement), 100.0));
-  return plan.solver->elements.value_or(std::max(1, wound));
+  return plan.solver->elements.value_or(std::max(plan.touches ? kTouchingElements : 1, wound));
+}
+
+int collocation_degree(const RodPlan& plan) {
+  return plan.solver->degree.value_or(plan.touches ? kTouchingDegree : kDefaultDegree);
 }
 
 int collocation_elements(const RodPlan& plan) {
   const SolverSpec& solver = *plan.solver;
   if (solver.elements) return *solver.elements;
-  const int degree = solver.degree.value_or(kDefaultDegree);
+  const int degree = collocation_degree(plan);
   double elements = 4;
   if (solver.accuracy) {
     const double error = kSplineError[degree - kLeastDegree] * plan.spec->length;
@@ -91,6 +98,7 @@ int collocation_elements(const RodPlan& plan) {
     elements =
         std::clamp(std::ceil(8 * std::pow(10 * error / *solver.accuracy, 1.0 / order)), 2.0, 200.0);
   }
+  if (plan.touches) elements = std::max<double>(elements, kTouchingElements);
   return static_cast<int>(
       std::clamp(std::ceil(elements * std::max(1.0, turn_of(plan))), 2.0, 400.0));
 }

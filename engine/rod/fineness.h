@@ -21,6 +21,7 @@ MethodChoice choose_method(const RodPlan& plan);
 int shooting_cells(const RodPlan& plan);
 int strain_order(const RodPlan& plan);
 int strain_elements(const RodPlan& plan);
+int collocation_degree(const RodPlan& plan);
 int collocation_elements(const RodPlan& plan);
 
 }  // namespace cprsim

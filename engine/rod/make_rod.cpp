@@ -77,6 +77,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.line_loads = plan.line_loads;
+  o.touches = plan.touches;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.along = plan.along;
@@ -92,7 +93,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
 std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   CollocationOptions o;
-  o.degree = plan.solver->degree.value_or(kDefaultDegree);
+  o.degree = collocation_degree(plan);
   o.elements = collocation_elements(plan);
   o.extension = plan.extension;
   o.shear = plan.shear;
@@ -100,6 +101,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.line_loads = plan.line_loads;
+  o.touches = plan.touches;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.along = plan.along;

@@ -68,6 +68,7 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   }
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
+  if (options_.touches) touch_.reset(new NodalContacts(*this));
   set_unloaded(X_WBase);
 }
 
@@ -175,6 +176,10 @@ void StrainRod::apply_load(std::size_t node, NodeState& state) const {
     Eigen::Map<Vec3>(state.n) -= R * load.force;
     Eigen::Map<Vec3>(state.m) -= R * load.torque;
   }
+  if (!touch_) return;
+  const Vec6 load = touch_->load_at(node, rotation_of(state));
+  Eigen::Map<Vec3>(state.n) -= load.head<3>();
+  Eigen::Map<Vec3>(state.m) -= load.tail<3>();
 }
 
 Vec3 StrainRod::strain(std::size_t element, const Eigen::Ref<const VecX>& phi, bool turns) const {
@@ -341,6 +346,7 @@ RodResidual StrainRod::evaluate(const Port& base, const Port& tip) {
     apply_load(e + 1, state);
     nodes_[e + 1] = state;
   }
+  if (touch_) touch_->begin_rows();
   section_evaluations_ += static_cast<long>(points_.size());
   add(law_residual_ / noise_);
   add(tip_.value(state, tip, loose) - tip_gap_);

@@ -32,6 +32,7 @@
 
 #include "engine/rod/end_condition.h"
 #include "engine/rod/immersion.h"
+#include "engine/rod/nodal_contacts.h"
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/strain_rule.h"
@@ -47,6 +48,7 @@ struct StrainOptions {
   bool extension = false, shear = false;
   bool rotary_inertia = false, damping = false, drag = false;
   bool line_loads = false;                     ///< whether there are loads spread along it
+  bool touches = false;                        ///< whether it may touch something: at its borders
   std::vector<double> stations;                ///< s / L of point loads
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
@@ -66,7 +68,7 @@ struct StrainPoint {
   Vec3 p, n, m, u, v, tau;
 };
 
-class StrainRod final : public RodModel, private TensionedRod {
+class StrainRod final : public RodModel, private TensionedRod, private ContactHost {
  public:
   /// @param X_WBase where the unloaded rod begins; in a plane its axes may be turned about the
   /// tangent. @param plane of a planar scene: e1, e2 and the normal as columns, world.
@@ -112,6 +114,8 @@ class StrainRod final : public RodModel, private TensionedRod {
   RodField field() const override;
   RodEnergy energy() const override;
   std::string row_name(int row) const override;
+
+  TouchingRod* touching() override { return touch_.get(); }
 
   RodResolution resolution() const override {
     return {Method::kStrain, "legendre", static_cast<int>(elements()), rule_.order};
@@ -198,6 +202,27 @@ class StrainRod final : public RodModel, private TensionedRod {
   void add_tension(Eigen::Index unknown, bool add) override;
   std::vector<Vec6> strain_rates(const VecX& direction) const override;
 
+  // contact
+  const std::vector<NodeState>& grid_nodes() const override { return nodes_; }
+
+  const std::vector<double>& node_grid() const override { return grid_; }
+
+  double rod_length() const override { return forcing_.length; }
+
+  const StageRates& stage_rates() const override { return rates_; }
+
+  Vec3 velocity_history(std::size_t node) const override {
+    return track_.x_h.segment<3>(3 * static_cast<Eigen::Index>(points_.size() + node));
+  }
+
+  ContactScale scale_of_contacts() const override;
+
+  /// Of the forces of contacts, behind those of x.
+  Eigen::Index force_columns() const { return touch_ ? touch_->columns() : 0; }
+
+  void vary_contacts(std::size_t node, Rows12& y);
+  VecX direction_with_forces() const;
+
   bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
 
   Vec3 own_wrench(const StrainMode& mode, std::size_t point) const;
@@ -283,7 +308,8 @@ class StrainRod final : public RodModel, private TensionedRod {
   // linearisation: columns of x
   MatX tip_columns_, law_columns_;
   std::vector<Rows3> point_turns_, point_moves_, node_moves_;
-  MatX general_;  ///< x = general_ [z; zeta_A; 1]
+  MatX general_;                   ///< x = general_ [z; zeta_A; 1; F], F the forces of contacts
+  std::vector<Rows3> node_turns_;  ///< of a rod that touches
 
   // direction and remembered unknowns
   VecX direction_;
@@ -292,6 +318,7 @@ class StrainRod final : public RodModel, private TensionedRod {
 
   Track track_;  ///< positions of points and borders, q if damped
   Track rotation_track_{Track::Kind::kRotation};
+  std::unique_ptr<NodalContacts> touch_;  ///< of a rod that may touch something
   long section_evaluations_ = 0;
 };
 

@@ -57,6 +57,16 @@ void StrainRod::vary_load(std::size_t node, Rows12& y) const {
   }
 }
 
+// (1) of engine/rod/nodal_contacts.h; nodes are where the forces act.
+void StrainRod::vary_contacts(std::size_t node, Rows12& y) {
+  node_moves_[node] = y.middleRows<3>(3);
+  if (!touch_) return;
+  node_turns_[node] = y.topRows<3>();
+  const Mat3 R = rotation_of(nodes_[node]);
+  y.middleRows<3>(9) -= touch_->moment_by_turn(node, R) * y.topRows<3>();
+  y.bottomRightCorner(6, force_columns()) -= touch_->load_by_forces(node, R);
+}
+
 // Variation of (3), in the order of the evaluation.
 void StrainRod::vary_element(std::size_t e, Rows12& y) {
   const Eigen::Index G = rule_.points();
@@ -183,15 +193,16 @@ void StrainRod::sweep_columns() {
   point_turns_.resize(points_.size());
   point_moves_.resize(points_.size());
   node_moves_.resize(nodes_.size());
-  law_columns_.setZero(n, states + n);
-  Rows12 y = Rows12::Zero(12, states + n);
+  node_turns_.resize(touch_ ? nodes_.size() : 0);
+  law_columns_.setZero(n, states + n + force_columns());
+  Rows12 y = Rows12::Zero(12, states + n + force_columns());
   y.leftCols(states) = space_.state * state_units().asDiagonal();
   vary_load(0, y);
-  node_moves_[0] = y.middleRows<3>(3);
+  vary_contacts(0, y);
   for (std::size_t e = 0; e < elements(); ++e) {
     vary_element(e, y);
     vary_load(e + 1, y);
-    node_moves_[e + 1] = y.middleRows<3>(3);
+    vary_contacts(e + 1, y);
   }
   tip_columns_ = y;
 }
@@ -239,24 +250,51 @@ std::vector<Vec6> StrainRod::strain_rates(const VecX& direction) const {
 
 bool StrainRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
   const Eigen::Index d = space_.freedoms(), n = strain_unknowns(), states = 2 * d;
+  const Eigen::Index forces = force_columns(), known = 2 * d + 1;
   sweep_columns();
-  // the base's rows and (4): A x + B [zeta_A; 1] = 0
+  // the base's rows and (4): A x + B [zeta_A; 1; F] = 0
   const ConditionRows held = base_.rows(start_, base, scale_);
   const MatX from_x = space_.state * state_units().asDiagonal();
-  MatX A = MatX::Zero(d + n, states + n), B = MatX::Zero(d + n, d + 1);
+  MatX A = MatX::Zero(d + n, states + n), B = MatX::Zero(d + n, d + 1 + forces);
   A.topLeftCorner(d, states) = held.by_state * from_x;
-  A.bottomRows(n) = law_columns_;
+  A.bottomRows(n) = law_columns_.leftCols(states + n);
   B.topLeftCorner(d, d) = held.by_body * space_.motion;
-  B.topRightCorner(d, 1) = held.value - base_gap_;
-  B.bottomRightCorner(n, 1) = law_residual_;
+  B.col(d) << held.value - base_gap_, law_residual_;
+  B.bottomRightCorner(n, forces) = law_columns_.rightCols(forces);
   if (!general_solution(A, B, general_)) return false;
   out.growth = general_.leftCols(d).cwiseAbs().maxCoeff();
 
   ConditionRows closed = tip_.rows(nodes_.back(), tip, scale_);
   closed.value -= tip_gap_;
-  condense_tip(space_, closed, tip_.held(), nodes_.back(), tip, tip_columns_ * general_, out);
-  condense_base(space_, start_, base, from_x * general_.topRows(states), out);
+  // what the forces do beside moving x
+  const auto answer = [&](const auto& columns) {
+    MatX all = columns.leftCols(states + n) * general_;
+    all.rightCols(forces) += columns.rightCols(forces);
+    return all;
+  };
+  OpenPorts* const ports = forces > 0 ? &touch_->ports() : nullptr;
+  condense_tip(space_, closed, tip_.held(), nodes_.back(), tip, answer(tip_columns_), out, ports);
+  condense_base(space_, start_, base, from_x * general_.topRows(states), out, ports);
+  if (ports == nullptr) return true;
+  std::vector<MatX> moves(nodes_.size(), MatX(6, known + forces));
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    moves[k] << answer(node_turns_[k]), answer(node_moves_[k]);
+  touch_->describe_motions(moves);
   return true;
+}
+
+VecX StrainRod::direction_with_forces() const {
+  VecX all(direction_.size() + force_columns());
+  all << direction_, force_columns() > 0 ? touch_->direction() : VecX(0);
+  return all;
+}
+
+ContactScale StrainRod::scale_of_contacts() const {
+  const double weight = section_.weighing_mass() * forcing_.gravity.norm() * scale_.length;
+  return {
+      scale_.length, std::max(scale_.force, weight),
+      rates_.dynamic() ? rates_.c_v * scale_.length : scale_.length,
+      options_.extension ? 0 : scale_.length / static_cast<double>(elements()) / section_.K_se.z()};
 }
 
 Vec6 StrainRod::wrench_on_base(const Port& base) const {
@@ -280,17 +318,21 @@ void StrainRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
 VecX StrainRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
   const Eigen::Index d = space_.freedoms();
   return general_.leftCols(d) * z.head(d) + general_.middleCols(d, d) * zeta_A.head(d) +
-         general_.col(2 * d);
+         general_.col(2 * d) +
+         (force_columns() > 0 ? VecX(general_.rightCols(force_columns()) * touch_->direction())
+                              : VecX::Zero(general_.rows()));
 }
 
 void StrainRod::keep() {
   if (finds_tensions()) tendons_->keep();
+  if (touch_) touch_->keep();
   kept_start_ = start_;
   kept_q_ = q_;
 }
 
 void StrainRod::move(double alpha) {
   if (finds_tensions()) tendons_->move(alpha, tension_direction_);
+  if (touch_) touch_->move(alpha);
   const Eigen::Index states = space_.state.cols(), functions = rule_.functions();
   const Vec12 y = space_.state * state_units().cwiseProduct(alpha * direction_.head(states));
   Eigen::Map<RowMatrix>(start_.R) =

@@ -67,10 +67,12 @@ void StrainRod::mark_positions() {
 std::vector<Track*> StrainRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
+  if (touch_ && touch_->turns()) all.push_back(touch_->turns());
   return all;
 }
 
 void StrainRod::fill_tracks() {
+  if (touch_) touch_->fill_turns();
   double* x = track_.x.data();
   for (const StrainPoint& point : points_)
     x = std::copy_n(point.p.data(), 3, x);
@@ -85,6 +87,7 @@ void StrainRod::fill_tracks() {
 }
 
 void StrainRod::accept_tracks() {
+  if (touch_) touch_->accept_contacts();
   for (std::size_t j = 0; j < rotary_.size(); ++j)
     Eigen::Map<RowMatrix>(rotary_[j].R_start) = points_[j].R;
 }
@@ -99,16 +102,18 @@ void StrainRod::start_tracks() {
   track_.set_start(VecX(track_.x), VecX::Zero(track_.x.size()));
   const Eigen::Index turns = rotation_track_.x.size();
   if (options_.rotary_inertia) rotation_track_.set_start(VecX::Zero(turns), VecX::Zero(turns));
+  if (touch_) touch_->start_turns();
 }
 
 // The direction taken as a velocity, through the variational equations that gave it.
 void StrainRod::start_tracks_moving() {
   start_tracks();
   VecX v = VecX::Zero(track_.x.size());
+  const VecX moving = direction_with_forces();
   Eigen::Index at = 0;
   for (const auto* moves : {&point_moves_, &node_moves_})
     for (const Rows3& columns : *moves) {
-      v.segment<3>(at) = columns * direction_;
+      v.segment<3>(at) = columns * moving;
       at += 3;
     }
   for (std::size_t e = 0; options_.damping && e < elements(); ++e) {
@@ -123,7 +128,7 @@ void StrainRod::start_tracks_moving() {
   }
   track_.set_start(VecX(track_.x), v);
   for (std::size_t j = 0; j < rotary_.size(); ++j) {
-    const Vec3 omega = points_[j].R.transpose() * (point_turns_[j] * direction_);
+    const Vec3 omega = points_[j].R.transpose() * (point_turns_[j] * moving);
     std::copy_n(omega.data(), 3, rotary_[j].omega);
     rotation_track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)) = omega;
   }
@@ -142,10 +147,18 @@ RodModel::Unknowns StrainRod::unknowns() const {
     u.values.conservativeResize(u.values.size() + tendons_->unknowns());
     u.values.tail(tendons_->unknowns()) = tendons_->values();
   }
+  if (touch_) {
+    u.nodes = nodes_;
+    u.contacts = touch_->contacts();
+  }
   return u;
 }
 
 void StrainRod::set_unknowns(const Unknowns& u) {
+  if (touch_) {
+    nodes_ = u.nodes;  // contacts look for what is near from there
+    touch_->set_contacts(u.contacts);
+  }
   start_ = u.starts.front();
   const Eigen::Index size = q_[0].size();
   for (std::size_t e = 0; e < elements(); ++e)
@@ -157,6 +170,8 @@ void StrainRod::predict(const std::vector<const Unknowns*>& past,
                         const std::vector<double>& weights) {
   assert(!past.empty() && past.size() == weights.size());
   Unknowns sum = *past.front();
+  sum.contacts = past.back()->contacts;  // the set is what it last was, its forces a start
+  sum.nodes = past.back()->nodes;
   sum.values.setZero();
   const NodeState& first = past.front()->starts.front();
   // increments from the first, so that only what moves in this rod's space is extrapolated
@@ -331,6 +346,7 @@ RodEnergy StrainRod::energy() const {
     add_strain_energy(energy);
   else
     add_varying_strain_energy(energy);
+  if (touch_) energy.damping_power += touch_->friction_power();
   // what a unit feed brings in, see ShootingRod::energy
   const VecX phi = legendre(0, rule_.order);
   double density = 0;

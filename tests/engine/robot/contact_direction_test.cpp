@@ -61,14 +61,21 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip) {
   robot.rods[1].model->touching()->contacts() = {
       contact_at(1, 0, grip, numbers), contact_at(1, 0.3, grip, numbers),
       contact_at(2, 0.8, grip, numbers), contact_at(4, 0, grip, numbers)};
+  TouchingRod& side = *robot.rods[1].model->touching();
+  if (side.owns_forces()) return;
+  robot.rods_meet = true;
+  for (RodContact& contact : side.contacts())
+    contact.role = ContactRole::kShared;
 }
 
 double slope_error(Grip grip, bool dynamic, double h, unsigned seed,
-                   const ShapeSpec& shape = ball(), const MeshDistance* mesh = nullptr) {
+                   const ShapeSpec& shape = ball(), const MeshDistance* mesh = nullptr,
+                   Method method = Method::kShooting) {
   const std::vector<Surface> surfaces{{&shape, {Mat3::Identity(), {0.9, 0.7, 1.2}}, mesh}};
   Scene scene = chain_of_rods(EndJoint::kRevolute, EndJoint::kUniversal);
   for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kRotaryInertia})
     scene.effects.set(e, true);
+  if (method != Method::kShooting) cut_for_contact(scene, method);
   Numbers numbers(seed);
   Robot robot = build_robot(scene);
   touch(robot, surfaces, grip);
@@ -103,6 +110,16 @@ TEST(ContactDirection, IsExactOnEveryShape) {
         EXPECT_LT(slope_error(grip, dynamic, 0.01, seed, egg()), kSlopeTolerance);
         EXPECT_LT(slope_error(grip, dynamic, 0.01, seed, shape, &mesh), kSlopeTolerance);
       }
+}
+
+TEST(ContactDirection, IsExactByEveryMethod) {
+  for (Method method : {Method::kStrain, Method::kCollocation})
+    for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
+      for (bool dynamic : {false, true})
+        for (unsigned seed = 1; seed <= 2; ++seed)
+          EXPECT_LT(slope_error(grip, dynamic, 0.01, seed, ball(), nullptr, method),
+                    kSlopeTolerance)
+              << static_cast<int>(method) << ", " << static_cast<int>(grip);
 }
 
 // Contacts and segments' starts recombine the same columns.

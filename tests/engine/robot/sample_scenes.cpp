@@ -173,4 +173,12 @@ void disturb(Robot& robot, Equations& equations, Numbers& numbers, double size) 
   equations.set_unknowns(u);
 }
 
+void cut_for_contact(Scene& scene, Method method) {
+  scene.effects.set(Effect::kContact, true);
+  scene.solver.method = method;
+  scene.solver.elements = 6;
+  scene.solver.order = 3;
+  scene.solver.degree = 4;
+}
+
 }  // namespace cprsim

@@ -62,4 +62,7 @@ StageRates start_step(Robot& robot, Equations& equations, SchemeKind scheme, dou
 /// Moves every unknown of the robot by about `size`, so that no row is left zero.
 void disturb(Robot& robot, Equations& equations, Numbers& numbers, double size);
 
+/// By a method whose contacts are at the borders of its elements, six of them.
+void cut_for_contact(Scene& scene, Method method);
+
 }  // namespace cprsim
