@@ -36,6 +36,31 @@ TEST(ContactScenes, MeetTheirExpectations) {
   EXPECT_GE(count, 5);
 }
 
+/// The scene's copy in the folder with another resolution in space.
+fs::path with_space(const std::string& scene, const std::string& space,
+                    const ScratchFolder& folder) {
+  std::string text = contents(kScenes / scene);
+  const std::size_t from = text.find("<space "), to = text.find("/>", from);
+  EXPECT_NE(from, std::string::npos) << scene;
+  text.replace(from, to - from, "<space " + space);
+  spill(folder / scene, text);
+  fs::copy_file(kScenes / "rock.obj", folder / "rock.obj", fs::copy_options::skip_existing);
+  return folder / scene;
+}
+
+// Statics, quasi-statics and dynamics; meshes, bodies that are held, other rods, friction.
+TEST(ContactScenes, MeetTheirExpectationsByEveryMethod) {
+  const ScratchFolder folder;
+  for (const char* scene : {"slope.xml", "rod_on_floor.xml", "sprung_cylinder.xml",
+                            "robot_and_bar.xml", "cantilever_on_rock.xml"}) {
+    const std::string elements = scene[0] == 'c' ? "elements=\"40\"" : "elements=\"8\"";
+    EXPECT_EQ(run(with_space(scene, "order=\"3\" " + elements, folder), "--method strain"), 0)
+        << scene;
+    EXPECT_EQ(run(with_space(scene, "degree=\"4\" " + elements, folder), "--method collocation"), 0)
+        << scene;
+  }
+}
+
 // What the expectations are worth: without contact they fail.
 TEST(ContactScenes, FailWithoutContact) {
   EXPECT_EQ(run(kScenes / "rod_on_floor.xml", "--without contact"), 1);
