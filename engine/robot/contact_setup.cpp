@@ -120,8 +120,7 @@ void RodContacts::add_rods_themselves() {
 void RodContacts::give_surfaces(Rod& rod) {
   if (!rod.side)
     throw std::invalid_argument("rod '" + rod.rod->spec->name +
-                                "' may touch something: no method in a plane can, and none but "
-                                "shooting along a rod whose tendons are given by length");
+                                "' may touch something: no method in a plane can");
   std::vector<Surface> surfaces;
   for (const Obstacle& obstacle : rod.obstacles) {
     surfaces.push_back(obstacle.surface);

@@ -35,8 +35,6 @@ class ContactCheck {
     if (scene.planar_normal)
       complain(scene.simulation.place, 19, "contact of rods is not available in a <planar> scene",
                "leave <planar> out");
-    for (const DriveSpec& drive : scene.drives)
-      if (drive.tendon >= 0 && drive.quantity == DriveQuantity::kDisplacement) check_tendon(drive);
     for (const RodSpec& rod : scene.rods)
       if ((touches(rod) || touches_itself(rod)) && rod.sections.size() > 1)
         complain(rod.place, kRodCaret,
@@ -58,19 +56,6 @@ class ContactCheck {
 
   bool touches_itself(const RodSpec& rod) const {
     return r_.scene.effects.has(Effect::kSelfContact) && !rod.lacks("self_contact");
-  }
-
-  /// Its tension is an unknown, as the forces of contact are.
-  void check_tendon(const DriveSpec& drive) {
-    const RodSpec& rod = r_.scene.rods[static_cast<std::size_t>(
-        r_.scene.tendons[static_cast<std::size_t>(drive.tendon)].rod)];
-    const Method method = rod.method.value_or(r_.scene.solver.method);
-    if (method == Method::kShooting || method == Method::kAuto) return;
-    if (touches(rod) || touches_itself(rod))
-      complain(drive.place, 13,
-               "a tendon driven by displacement along a rod that may touch something, '" +
-                   rod.name + "', is not available in this method",
-               "method=\"shooting\", or drive its tension");
   }
 
   void complain(const Place& place, int caret, const std::string& what, const std::string& hint) {
