@@ -165,4 +165,29 @@ RodEnergy CollocationRod::energy() const {
   return e;
 }
 
+std::string CollocationRod::row_name(int row) const {
+  const int d = static_cast<int>(space_.freedoms());
+  if (row < d) return "base of " + name_ + ", " + base_.row_name(row);
+  if (row == d) return "unit quaternion at the base of " + name_;
+  row -= d + 1;
+  for (std::size_t g = 0; g < pieces_.size(); ++g) {
+    if (g > 0) {
+      if (row < width()) return "join " + std::to_string(g) + " between pieces of " + name_;
+      row -= width();
+    }
+    if (row < width() * pieces_[g].points) {
+      static const char* const kRows[] = {"unit quaternion", "curvature law", "stretch law",
+                                          "force balance", "moment balance"};
+      Eigen::Index at = 0;  // of the 13
+      rows_.row(row % width()).cwiseAbs().maxCoeff(&at);
+      const auto j = static_cast<std::size_t>(pieces_[g].first_point + row / width());
+      return std::string(kRows[(at + 2) / 3]) + " of " + name_ +
+             " at s = " + std::to_string(sites_[j].s);
+    }
+    row -= width() * pieces_[g].points;
+  }
+  if (row >= d) return "length of a tendon of " + name_;
+  return "tip of " + name_ + ", " + tip_.row_name(row);
+}
+
 }  // namespace cprsim
