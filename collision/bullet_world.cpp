@@ -49,6 +49,8 @@ class BulletWorld : public FreeBodies {
   void add_free_body(const BodySpec& spec, FreeBody& free);
   void add_obstacles(const Scene& scene);
   int count_substeps(double step) const;
+  LinkContact link_contact(const btPersistentManifold& manifold, const btManifoldPoint& point,
+                           double distance) const;
 
   Shapes shapes_;
   btDefaultCollisionConfiguration configuration_;
@@ -61,7 +63,7 @@ class BulletWorld : public FreeBodies {
   std::vector<Obstacle> obstacles_;
   std::unique_ptr<btDiscreteDynamicsWorld> world_;
   double notice_ = std::numeric_limits<double>::infinity();  // of the smallest shape
-  double time_ = 0;
+  double time_ = 0, substep_ = 0;
 };
 
 BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& free_bodies)
@@ -97,6 +99,7 @@ void BulletWorld::add_free_body(const BodySpec& spec, FreeBody& free) {
   body.setGravity(to_bullet(free.gravity));
   body.setUserPointer(&free.contactor);
   body.setUserIndex(static_cast<int>(&free - bodies_.data()));
+  body.setUserIndex2(free.index);
   free.set_motion(initial_motion(free, spec));
   world_->addRigidBody(&body);
   if (!touches) return;
@@ -127,6 +130,7 @@ void BulletWorld::add_obstacles(const Scene& scene) {
   // only now are the addresses final that Bullet keeps
   for (Obstacle& obstacle : obstacles_) {
     obstacle.body->setUserPointer(&obstacle.contactor);
+    obstacle.body->setUserIndex2(obstacle.index);
     world_->addRigidBody(obstacle.body.get());
   }
 }
@@ -156,6 +160,7 @@ void BulletWorld::advance(double step, const std::vector<BodyMotion>& others) {
 
   const int count = count_substeps(step);
   const double dt = step / count;
+  substep_ = dt;
   for (int i = 0; i < count; ++i) {
     for (Obstacle& obstacle : obstacles_)
       obstacle.place(i * dt);
@@ -182,6 +187,32 @@ void BulletWorld::read(std::vector<BodyMotion>& all) const {
   }
 }
 
+/// A point as the last substep has solved it. Forces are impulses over its length.
+LinkContact BulletWorld::link_contact(const btPersistentManifold& manifold,
+                                      const btManifoldPoint& point, double distance) const {
+  const btRigidBody& a = *btRigidBody::upcast(manifold.getBody0());
+  const btRigidBody& b = *btRigidBody::upcast(manifold.getBody1());
+  const auto metres = [](const btVector3& v) { return Vec3(Vec3(v.x(), v.y(), v.z()) / kU); };
+  const btVector3 at = a.getWorldTransform() * point.m_localPointA;
+  LinkContact out;
+  out.link = a.getUserIndex2();
+  out.other = b.getUserIndex2();
+  out.position = metres(at);
+  out.normal = kU * metres(point.m_normalWorldOnB);
+  out.gap = distance;
+  const auto velocity = [&](const btRigidBody& body) {
+    return body.getVelocityInLocalPoint(at - body.getWorldTransform().getOrigin());
+  };
+  const Vec3 u = metres(velocity(a) - velocity(b));
+  out.slip = u - out.normal.dot(u) * out.normal;
+  if (substep_ > 0)
+    out.force = metres(point.getAppliedImpulse() * point.m_normalWorldOnB +
+                       point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                       point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2) /
+                substep_;
+  return out;
+}
+
 ContactSample BulletWorld::contacts() const {
   ContactSample sample;
   for (int m = 0; m < dispatcher_.getNumManifolds(); ++m) {
@@ -195,6 +226,7 @@ ContactSample BulletWorld::contacts() const {
       if (point.getAppliedImpulse() <= 0 && distance > 0) continue;
       ++sample.count;
       sample.penetration = std::max(sample.penetration, -distance);
+      sample.links.push_back(link_contact(manifold, point, distance));
     }
   }
   return sample;

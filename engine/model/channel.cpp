@@ -3,7 +3,7 @@
 //   robot::leg_*(s=0.5).position.x  ->  robot::leg_* | 0.5 | position.x
 // Every entity has a list of scalar names; the rest selects those that it matches as a whole or up
 // to a dot. Of these `pose` stands for position and orientation, `wrench` groups force and moment,
-// and `shape` stands for eleven points.
+// and `shape` stands for eleven points. `contact(a,b).rest` is apart: two names, then the rest.
 #include "engine/model/channel.h"
 
 #include <algorithm>
@@ -57,6 +57,7 @@ const char* unit_of(Quantity quantity) {
     case Quantity::kLength:
     case Quantity::kDisplacement:
     case Quantity::kContactPenetration:
+    case Quantity::kContactGap:
       return "m";
     case Quantity::kLinearVelocity:
     case Quantity::kContactSlip:
@@ -314,6 +315,55 @@ void pick_from(const Scene& scene, const Entity& entity, const Pattern& pattern,
   pick(scalars_of(scene, entity), "", pattern.rest, out);
 }
 
+std::vector<Scalar> scalars_of_pair(const Scene& scene, const ContactPair& pair) {
+  const std::string name =
+      "contact(" + party_name(scene, pair[0]) + "," + party_name(scene, pair[1]) + ")";
+  List list({name, ChannelEntity::kContactPair, 0});
+  list.add("count", Quantity::kContactCount);
+  list.add("penetration", Quantity::kContactPenetration);
+  if (pair[0].rod || pair[1].rod) list.add("gap", Quantity::kContactGap);
+  list.add_vector("force", Quantity::kForce);
+  list.add("force.normal", Quantity::kContactForce);
+  list.add("force.friction", Quantity::kContactFriction);
+  list.add_vector("position", Quantity::kPosition);
+  list.add("slip", Quantity::kContactSlip);
+  for (Scalar& scalar : list.scalars)
+    scalar.channel.pair = pair;
+  return std::move(list.scalars);
+}
+
+// `force` is the vector; its sizes are asked for by name, or by *.
+void pick_pair(const Scene& scene, const ContactPair& pair, std::string_view rest,
+               std::vector<Channel>& out) {
+  for (const Scalar& scalar : scalars_of_pair(scene, pair)) {
+    const bool size = scalar.channel.quantity == Quantity::kContactForce ||
+                      scalar.channel.quantity == Quantity::kContactFriction;
+    if (size ? glob(rest, scalar.suffix) : selects(rest, scalar.suffix))
+      out.push_back(scalar.channel);
+  }
+}
+
+// Of names with * those pairs that may touch, each once; of names in full whatever they name.
+void pick_pairs(const Scene& scene, const PairPattern& pattern, std::vector<Channel>& out) {
+  const bool globs = pattern.a.find('*') != std::string_view::npos ||
+                     pattern.b.find('*') != std::string_view::npos;
+  const std::vector<ContactParty> parties = contact_parties(scene);
+  std::vector<ContactPair> taken;
+  for (const ContactParty& a : parties) {
+    if (!glob(pattern.a, party_name(scene, a))) continue;
+    for (const ContactParty& b : parties) {
+      if (!glob(pattern.b, party_name(scene, b))) continue;
+      const ContactPair pair{a, b};
+      const auto same = [&](const ContactPair& other) { return same_pair(pair, other); };
+      if (globs && (!why_never_touching(scene, pair).empty() ||
+                    std::any_of(taken.begin(), taken.end(), same)))
+        continue;
+      taken.push_back(pair);
+      pick_pair(scene, pair, pattern.rest, out);
+    }
+  }
+}
+
 int distance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j)
@@ -349,10 +399,55 @@ std::vector<std::string> stems_of(const Scene& scene, const Entity& entity) {
   return stems;
 }
 
+/// Each name as it is where it is one, else the nearest.
+std::vector<std::string> nearest_pairs(const Scene& scene, const PairPattern& pattern,
+                                       std::size_t count) {
+  using Ranked = std::vector<std::pair<int, std::string>>;
+  const auto best = [&](Ranked ranked) {
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (ranked.size() > count) ranked.resize(count);
+    return ranked;
+  };
+  const auto near = [&](std::string_view wanted) {
+    Ranked ranked;
+    for (const ContactParty& party : contact_parties(scene)) {
+      const std::string& name = party_name(scene, party);
+      if (glob(wanted, name)) return Ranked{{0, std::string(wanted)}};
+      ranked.emplace_back(distance(wanted, name), name);
+    }
+    return best(std::move(ranked));
+  };
+  Ranked rests;
+  for (const char* rest : {"*", "count", "penetration", "gap", "force", "force.normal",
+                           "force.friction", "position", "slip"})
+    rests.emplace_back(distance(pattern.rest, rest), rest);
+  std::vector<Channel> found;
+  const ContactPair any{ContactParty{true, 0}, ContactParty{true, 0}};
+  if (!scene.rods.empty()) pick_pair(scene, any, pattern.rest, found);
+  if (!found.empty()) rests = {{0, std::string(pattern.rest)}};
+  Ranked all;
+  for (const auto& [da, a] : near(pattern.a))
+    for (const auto& [db, b] : near(pattern.b))
+      for (const auto& [dr, rest] : best(rests)) {
+        std::string name = "contact(";
+        name += a + "," + b + ")." + rest;
+        all.emplace_back(da + db + dr, std::move(name));
+      }
+  std::vector<std::string> names;
+  for (const auto& [apart, name] : best(std::move(all)))
+    names.push_back(name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<Channel> find_channels(const Scene& scene, std::string_view pattern) {
   std::vector<Channel> channels;
+  if (const PairPattern pair = pair_pattern(pattern); pair.is_one) {
+    if (pair.whole) pick_pairs(scene, pair, channels);
+    return channels;
+  }
   const Pattern parts = split(pattern);
   if (!parts.valid) return channels;
   for (const Entity& entity : entities_of(scene))
@@ -364,6 +459,8 @@ std::vector<std::string> nearest_channels(const Scene& scene, std::string_view p
                                           std::size_t count) {
   constexpr std::size_t kLongest = 200;
   pattern = pattern.substr(0, kLongest);
+  if (const PairPattern pair = pair_pattern(pattern); pair.is_one)
+    return nearest_pairs(scene, pair, count);
   // the entity decides first, so that a wrong quantity is answered with that entity's own
   const auto entity_of = [](std::string_view name) {
     return name.substr(0, name.find_first_of(".("));

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Channels: the one grammar by which recordings, expectations and plots name a number of the robot,
-// `entity[.part].quantity[.component]`. Names are resolved against a scene before anything runs.
+// `entity[.part].quantity[.component]` or `contact(entity,entity).quantity[.component]`. Names are
+// resolved against a scene before anything runs.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/model/touch.h"
 
 namespace cprsim {
 
@@ -20,7 +23,8 @@ enum class ChannelEntity {
   kTendon,
   kEnergy,
   kSolver,
-  kContact
+  kContact,
+  kContactPair
 };
 
 enum class Quantity {
@@ -54,7 +58,8 @@ enum class Quantity {
   kContactPenetration,
   kContactForce,
   kContactFriction,
-  kContactSlip
+  kContactSlip,
+  kContactGap  ///< of a pair
 };
 
 /// One scalar of the robot's state.
@@ -66,6 +71,7 @@ struct Channel {
   double s = 0;    ///< rod points: fraction of the length, 0 base .. 1 tip
   Quantity quantity = Quantity::kPosition;
   int component = 0;  ///< x y z (w)
+  ContactPair pair;   ///< of kContactPair
 };
 
 /// All scalar channels that `pattern` (with * globs) names; empty if none.

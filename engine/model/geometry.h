@@ -68,6 +68,8 @@ struct SurfaceSpec {
   double friction = 1.0;
   double restitution = 0.0;
   double rolling_friction = 0.0;
+  double stiffness = 0.0;  ///< kp of rods' contacts, N/m a point; 0: rigid
+  double damping = 0.0;    ///< kd, N s/m a point
   unsigned collide_bitmask = 0xffff;
   unsigned category_bitmask = 0xffff;
 };

@@ -17,6 +17,7 @@
 #include "engine/model/solver_spec.h"
 #include "engine/model/sweep_spec.h"
 #include "engine/model/tendon_spec.h"
+#include "engine/model/touch.h"
 #include "engine/model/view_spec.h"
 
 namespace cprsim {
@@ -58,6 +59,7 @@ struct Scene {
   std::vector<RecordSpec> records;
   std::vector<ExpectSpec> expects;
   std::vector<SweepSpec> sweeps;
+  std::vector<ContactPair> watched;  ///< see watch_pairs()
 };
 
 }  // namespace cprsim

@@ -52,7 +52,9 @@ void RodContacts::add_colliders(Rod& rod) {
       obstacle.name = scene.bodies[i].name + "::" + collider.name;
       obstacle.surface = {&collider.shape, place.X * collider.X_BC, mesh_of(collider.shape)};
       obstacle.plane = collider.shape.kind == ShapeKind::kPlane;
+      obstacle.link = static_cast<int>(i);
       obstacle.body = std::max(place.body, -1);
+      soften(collider.surface, own.spec->surface, obstacle);
       if (friction_) obstacle.friction = collider.surface.friction * own.spec->surface.friction;
       rod.obstacles.push_back(obstacle);
     }
@@ -93,6 +95,7 @@ void RodContacts::add_other_rods() {
       obstacle.name = rods_[b].rod->spec->name;
       obstacle.rod = static_cast<int>(b);
       if (friction_) obstacle.friction = mine.friction * other.friction;
+      soften(mine, other, obstacle);
       rods_[a].obstacles.push_back(obstacle);
     }
 }
@@ -111,10 +114,18 @@ void RodContacts::add_rods_themselves() {
     obstacle.name = "itself";
     obstacle.rod = static_cast<int>(i);
     obstacle.itself = true;
-    const double friction = rod.rod->spec->surface.friction;
-    if (friction_) obstacle.friction = friction * friction;
+    const SurfaceSpec& surface = rod.rod->spec->surface;
+    if (friction_) obstacle.friction = surface.friction * surface.friction;
+    soften(surface, surface, obstacle);
     rod.obstacles.push_back(obstacle);
   }
+}
+
+// Springs in a row give together; dampers as in Gazebo, whose sum is taken.
+void RodContacts::soften(const SurfaceSpec& a, const SurfaceSpec& b, Obstacle& obstacle) const {
+  for (const SurfaceSpec* side : {&a, &b})
+    if (side->stiffness > 0) obstacle.give += 1 / side->stiffness;
+  obstacle.lag = obstacle.give * (a.damping + b.damping);
 }
 
 void RodContacts::give_surfaces(Rod& rod) {

@@ -340,6 +340,7 @@ ContactSample RodContacts::sample() {
       at.force = contacts[i].force;
       at.slip = rows[i].slip - n.dot(rows[i].slip) * n;
       at.gap = rows[i].at.d - rod.radius;
+      at.other = pair_of(rod, rod.obstacles[static_cast<std::size_t>(contacts[i].surface)])[1];
       out.points.push_back(at);
       ++out.count;
       out.force += pressure;
@@ -347,6 +348,8 @@ ContactSample RodContacts::sample() {
       out.slip = std::max(out.slip, at.slip.norm());
     }
   }
+  for (const ContactPair& pair : robot_.scene->watched)
+    if (pair[0].rod || pair[1].rod) out.distances.push_back(measure(pair));
   return out;
 }
 

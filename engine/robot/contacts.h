@@ -90,7 +90,9 @@ class RodContacts {
     std::string name;
     Surface surface;  ///< with its pose in the world, or on the body
     double friction = 0;
+    double give = 0, lag = 0;  ///< of RodContact, in motion
     bool plane = false;
+    int link = -1;  ///< index into Scene::bodies, if one
     int body = -1;  ///< index into Robot::bodies, if on one
     int rod = -1;   ///< index into rods_, if one
     bool itself = false;
@@ -172,6 +174,12 @@ class RodContacts {
   void update_echoes();
   void mirror();
 
+  void soften(const SurfaceSpec& a, const SurfaceSpec& b, Obstacle& obstacle) const;
+  bool comes_nearer(const Rod& rod, const RodContact& contact, double d) const;
+  double begun_distance(const Rod& rod, const RodContact& contact) const;
+  ContactPair pair_of(const Rod& rod, const Obstacle& obstacle) const;
+  PairDistance measure(const ContactPair& pair) const;
+
   double length(const Rod& rod, std::size_t cell) const;
   Vec3 point(const Rod& rod, std::size_t cell, double xi) const;
   Vec3 point(const Rod& rod, const std::vector<NodeState>& nodes, std::size_t cell,
@@ -199,6 +207,7 @@ class RodContacts {
       meshes_;              ///< of the scene's, those that rods may touch
   std::vector<int> index_;  ///< Robot::rods → rods_
   bool friction_ = false, lagged_ = false;
+  bool rates_ = false;   ///< in a step of a dynamic run
   int eased_ = 0;        ///< steps for which ease() still holds
   double recovery_ = 0;  ///< time in which depth falls to 1 / e, s
   double left_ = 0;      ///< share of the depth at the step's begin that is left to it now

@@ -19,6 +19,9 @@
 // that a cell would have. Nothing creeps, since f_0 follows f.
 // What is sunk when a time step begins is given time to come back: for d - r in (3) to (5) read
 // d - r - e, e being the depth that is left to it. Put back at once it would be thrown.
+// What is not rigid but gives, with the normal force k_p depth + k_d depth rate as in SDF, has in
+// (3) to (5) in the place of d - r - e
+//   d - r + (n.f + k_d n.u) / k_p                                                          (7)
 // Which points touch, and which of (3) to (5) holds, is decided between solves
 // (engine/robot/contacts.h). L, F are the rod's scales, U is L times the rate of the scheme.
 #pragma once
@@ -58,6 +61,8 @@ struct RodContact {
   bool may_rest = false;      ///< while it is said to slip: |tau| < mu (n.f) / F in (5) is stick
   double bound = -1;          ///< of friction, N; below 0: mu times the pressure
   double sunk = 0;            ///< e, not above 0, m
+  double give = 0;            ///< 1 / k_p of (7), m/N; 0: rigid
+  double lag = 0;             ///< k_d / k_p of (7), s; 0 without rates
   double kappa = 1;           ///< weighs u in (6)
   Vec3 lever = Vec3::Zero();  ///< l, as it was when the point was chosen
   Vec3 axis = Vec3::UnitZ();  ///< a, likewise

@@ -148,6 +148,7 @@ struct Simulation::Parts {
     sample.friction = rods.friction;
     sample.slip = rods.slip;
     sample.points = rods.points;
+    sample.distances = rods.distances;
   }
 
   /// A rod that begins inside an obstacle would be shot out of it.

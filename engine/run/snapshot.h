@@ -7,6 +7,7 @@
 
 #include "engine/math/archive.h"
 #include "engine/math/types.h"
+#include "engine/model/touch.h"
 #include "engine/rod/shape.h"
 
 namespace cprsim {
@@ -46,6 +47,24 @@ struct ContactPoint {
   Vec3 force = Vec3::Zero();     ///< N
   Vec3 slip = Vec3::Zero();      ///< of the rod over the other, m/s; in quasi-statics m per step
   double gap = 0;                ///< m
+  ContactParty other;            ///< what it touches
+};
+
+/// Where two links touch; of a body in free flight, as of its last substep.
+struct LinkContact {
+  int link = 0, other = 0;       ///< indices into Scene::bodies
+  Vec3 position = Vec3::Zero();  ///< m
+  Vec3 normal = Vec3::UnitZ();   ///< of the other, outwards, unit
+  Vec3 force = Vec3::Zero();     ///< on the link, N
+  Vec3 slip = Vec3::Zero();      ///< of the link over the other, m/s
+  double gap = 0;                ///< m
+};
+
+/// The least distance of a pair that is watched.
+struct PairDistance {
+  ContactPair pair;
+  double gap = 0;                ///< m; below 0: how deep
+  Vec3 position = Vec3::Zero();  ///< where, on the surface of the pair's first rod, m
 };
 
 struct ContactSample {
@@ -54,6 +73,8 @@ struct ContactSample {
   double force = 0, friction = 0;    ///< sums of normal and tangential forces on rods, N
   double slip = 0;                   ///< fastest of rods, m/s
   std::vector<ContactPoint> points;  ///< of rods
+  std::vector<LinkContact> links;
+  std::vector<PairDistance> distances;  ///< as Scene::watched, where there is a rod
 };
 
 struct Snapshot {

@@ -80,6 +80,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"W507", "a quaternion or direction was not of unit length and has been normalised"},
       {"W508", "a resolution that belongs to a method no rod uses"},
       {"W511", "data for an effect that is not listed"},
+      {"W512", "two that cannot touch are asked about"},
       {"W601", "the accuracy asked for is not reached"},
       {"W602", "energy that is not accounted for: steps or rods are too coarse for the motion"},
       {"W603", "the equilibrium is unstable: the robot would not stay there"},

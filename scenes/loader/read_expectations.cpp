@@ -48,6 +48,33 @@ void read_match(Reading& r, const Node& node, Expectation& e) {
     d.details.push_back("tried " + place);
 }
 
+// two names: of links or rods, or patterns of such
+void read_touching(Reading& r, const Node& node, const Attribute* between, Expectation& e) {
+  if (!between) {
+    e.channels = find_channels(r.scene, "contact.count");
+    return;
+  }
+  const auto names = split_words(between->value);
+  if (names.size() != 2) {
+    r.report.bad_value("E305", node, *between,
+                       "two links or rods are needed here, as in \"robot::leg scenery::floor\"");
+    return;
+  }
+  const std::string pattern =
+      "contact(" + std::string(names[0]) + "," + std::string(names[1]) + ").count";
+  e.channels = find_channels(r.scene, pattern);
+  warn_of_pairs(r, node, e.channels);
+  if (!e.channels.empty() || r.report.failed()) return;
+  std::string hint;
+  for (const std::string& name : nearest_channels(r.scene, pattern)) {
+    const PairPattern pair = pair_pattern(name);
+    hint += (hint.empty() ? "did you mean \"" : ", \"") + std::string(pair.a) + " " +
+            std::string(pair.b) + "\"";
+  }
+  r.report.bad_value("E411", node, *between, "there are no two links or rods of these names",
+                     hint.empty() ? hint : hint + "?");
+}
+
 void read_event(Reading& r, const Node& node, Expectation& e) {
   const std::string_view kind = node.value("kind");
   e.event = kind == "contact"      ? EventKind::kContact
@@ -58,14 +85,9 @@ void read_event(Reading& r, const Node& node, Expectation& e) {
   if (e.to >= 0 && e.to < e.from)
     r.report.error("E306", node, "before lies before after: nothing can fulfil this");
   const Attribute* between = node.attribute("between");
-  if (e.event != EventKind::kLimit && between) {
-    r.report.bad_value("E520", node, *between, "contacts between two are not told apart yet",
-                       "available: contact and separation of anything");
-    return;
-  }
+  if (e.event != EventKind::kLimit) return read_touching(r, node, between, e);
   const std::string joint = between ? between->value : "*";
-  e.channels = find_channels(
-      r.scene, e.event == EventKind::kLimit ? joint + ".limit*" : std::string("contact.count"));
+  e.channels = find_channels(r.scene, joint + ".limit*");
   if (!e.channels.empty() || r.report.failed()) return;
   const std::string message =
       between ? "'" + joint + "' is no joint with limits" : std::string("no joint has limits");

@@ -111,14 +111,27 @@ void read_record(Reading& r, const Node& node) {
 
 }  // namespace
 
+void warn_of_pairs(Reading& r, const Node& node, const std::vector<Channel>& channels) {
+  std::vector<ContactPair> told;
+  for (const Channel& channel : channels) {
+    if (channel.entity != ChannelEntity::kContactPair) continue;
+    const auto same = [&](const ContactPair& pair) { return same_pair(pair, channel.pair); };
+    if (std::any_of(told.begin(), told.end(), same)) continue;
+    told.push_back(channel.pair);
+    const std::string why = why_never_touching(r.scene, channel.pair);
+    if (!why.empty())
+      r.report.warn("W512", node,
+                    "'" + party_name(r.scene, channel.pair[0]) + "' and '" +
+                        party_name(r.scene, channel.pair[1]) + "' never touch: " + why);
+  }
+}
+
 std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* attribute) {
   const std::string& pattern = attribute ? attribute->value : node.text;
   std::vector<Channel> channels = find_channels(r.scene, pattern);
-  if (!channels.empty()) return channels;
-  if (pattern.substr(0, 8) == "contact(") {
-    r.report.error("E520", node, "channels of single contacts are not available in this version",
-                   "available: contact.count, contact.penetration, contact.force, "
-                   "contact.friction, contact.slip");
+  if (!channels.empty()) {
+    watch_pairs(r.scene, channels);
+    warn_of_pairs(r, node, channels);
     return channels;
   }
   // of something that is there but could not be read: its own error is enough

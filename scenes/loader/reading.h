@@ -63,6 +63,9 @@ std::optional<int> find_tendon(const Reading& reading, int scope, std::string_vi
 /// Channels that an attribute (none: the element's text) names; an error if there is none.
 std::vector<Channel> channels_of(Reading& reading, const Node& node, const Attribute* attribute);
 
+/// Tells of pairs in `contact(a,b)` that cannot touch.
+void warn_of_pairs(Reading& reading, const Node& node, const std::vector<Channel>& channels);
+
 /// Summed shapes of time that are children of `node`.
 Profile read_shapes(Reading& reading, const Node& node);
 

@@ -24,6 +24,30 @@ TEST(Contact, ADroppedCubeLandsAndRests) {
   }
 }
 
+// On a slope: the plane's forces on the cube, summed up, are its weight, friction's share included.
+TEST(Contact, SinglePointsCarryTheWeight) {
+  const double slope = 0.3;
+  World world(scene_of({ground(Vec3(-std::sin(slope), 0, std::cos(slope))), [&] {
+                          BodySpec body = cube(Vec3::Zero());
+                          const Mat3 R =
+                              Eigen::AngleAxisd(-slope, Vec3::UnitY()).toRotationMatrix();
+                          body.X_WB = {R, R * Vec3(0, 0, 0.01)};
+                          return body;
+                        }()}));
+  world.run(1, 1e-3);
+  const ContactSample contact = world.free->contacts();
+  ASSERT_EQ(contact.links.size(), 4u);
+  Vec3 on_cube = Vec3::Zero();
+  for (const LinkContact& point : contact.links) {
+    EXPECT_EQ(point.link + point.other, 1);
+    on_cube += (point.link == 1 ? 1 : -1) * point.force;
+    EXPECT_LT(point.slip.norm(), 1e-6);
+    EXPECT_LT(std::abs(point.gap), 1e-6);
+    EXPECT_NEAR(std::abs(point.normal.z()), std::cos(slope), 1e-9);
+  }
+  EXPECT_LT((on_cube - Vec3(0, 0, 0.1 * kG)).norm(), 1e-3 * 0.1 * kG);
+}
+
 TEST(Contact, ATiltedCubeComesToRestOnAFace) {
   BodySpec body = cube(Vec3(0, 0, 0.05));
   body.X_WB.R = Eigen::AngleAxisd(0.4, Vec3(1, 2, 0.5).normalized()).toRotationMatrix();

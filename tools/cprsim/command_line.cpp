@@ -59,6 +59,24 @@ struct CommandLine::Parser {
   std::vector<std::pair<std::string, std::string>> exclusive;  ///< not CLI11's: it widens the help
 };
 
+namespace {
+
+/// At commas, but not at that of contact(a,b).
+std::vector<std::string> split_outside_parentheses(const std::string& text) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && depth == 0)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+}  // namespace
+
 CommandLine::CommandLine(const std::string& name, const std::string& about)
     : parser_(std::make_unique<Parser>()) {
   parser_->app.name(name);
@@ -100,8 +118,10 @@ void CommandLine::texts(const std::string& name, std::vector<std::string>& value
 
 void CommandLine::list(const std::string& name, std::vector<std::string>& values,
                        const std::string& type, const std::string& help) {
-  texts(name, values, type, help);
-  option_named(parser_->app, name)->delimiter(',');
+  each(name, type, help, [&values](const std::string& text) {
+    for (std::string& part : split_outside_parentheses(text))
+      values.push_back(std::move(part));
+  });
 }
 
 void CommandLine::one(const std::string& name, const std::string& type, const std::string& help,

@@ -147,7 +147,9 @@ int say_what_was_written(const ExportOptions& options, const Console& console) {
   return kExitDone;
 }
 
-int export_scene(const Scene& scene, const ExportOptions& options, const Console& console) {
+int export_scene(const Scene& given, const ExportOptions& options, const Console& console) {
+  Scene scene = given;
+  watch_pairs(scene, channels_to_export(scene, options));
   Exporter exporter(scene, options);
   const QuietRun run = run_quietly(scene, onlooker(exporter), [] { return stop_signal() != 0; });
   exporter.finish();  // what was computed is kept

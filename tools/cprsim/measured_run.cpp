@@ -67,6 +67,7 @@ MeasuredRun measured_run(const std::string& path, const SceneOptions& options,
     return result;
   }
   try {
+    watch_pairs(*loaded.scene, channels_named(*loaded.scene, looking.channels));
     for (int i = 0; i < looking.repetitions; ++i) {
       const QuietRun run = run_once(*loaded.scene, looking, result, stop);
       result.cpu_seconds = i == 0 ? run.cpu_seconds : std::min(result.cpu_seconds, run.cpu_seconds);

@@ -229,6 +229,7 @@ int plot(const PlotOptions& options, const Console& console) {
     if (!options.heat.empty() && (loaded.scene->rods.empty() || options.sources.size() > 1 ||
                                   loaded.scene->simulation.mode == Mode::kStatic))
       throw UsageError("--heat needs one scene, with rods and a duration");
+    watch_pairs(*loaded.scene, channels_for(*loaded.scene, options));
     sources.push_back(simulate(*loaded.scene, label_of(path, *loaded.scene), options, rods));
     if (stop_signal() != 0) return 128 + stop_signal();
   }

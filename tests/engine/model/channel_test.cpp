@@ -52,6 +52,68 @@ TEST(Channels, SelectComponentsAndGlobs) {
             3u);  // bodies and frames; a joint's position has no components
 }
 
+/// The platform may be touched, both legs too.
+Scene touching_robot() {
+  Scene scene = robot();
+  scene.effects.set(Effect::kContact, true);
+  scene.bodies[1].is_static = true;
+  scene.bodies[1].colliders.resize(1);
+  scene.bodies[1].colliders[0].shape.kind = ShapeKind::kSphere;
+  return scene;
+}
+
+TEST(Channels, OfAPairOfThingsThatTouch) {
+  const Scene scene = touching_robot();
+  const auto force = find_channels(scene, "contact(robot::leg_1, robot::platform).force");
+  ASSERT_EQ(force.size(), 3u);
+  EXPECT_EQ(force[0].name, "contact(robot::leg_1,robot::platform).force.x");
+  EXPECT_EQ(force[2].component, 2);
+  EXPECT_TRUE(force[0].pair[0] == (ContactParty{true, 0}));
+  EXPECT_TRUE(force[0].pair[1] == (ContactParty{false, 1}));
+  const auto all = find_channels(scene, "contact(robot::leg_1,robot::platform).*");
+  EXPECT_EQ(all.size(), 12u);
+  EXPECT_EQ(find_channels(scene, "contact(robot::platform,robot::leg_1).force.*").size(), 5u);
+  EXPECT_EQ(find_channels(scene, "contact(robot::leg_1,robot::leg_2).gap")[0].unit, "m");
+  // distances of links from each other are not known
+  EXPECT_TRUE(find_channels(scene, "contact(robot::base,robot::platform).gap").empty());
+}
+
+TEST(Channels, GlobsOfPairsAreThoseThatMayTouchEachOnce) {
+  std::vector<std::string> found;
+  for (const Channel& channel : find_channels(touching_robot(), "contact(robot::*,*).count"))
+    found.push_back(channel.name);
+  EXPECT_EQ(found, (std::vector<std::string>{"contact(robot::platform,robot::leg_1).count",
+                                             "contact(robot::platform,robot::leg_2).count",
+                                             "contact(robot::leg_1,robot::leg_2).count"}));
+}
+
+TEST(Channels, OfAPairNearestToATypingError) {
+  const Scene scene = touching_robot();
+  EXPECT_EQ(nearest_channels(scene, "contact(robot::lag_1,robot::platform).force.normal", 1)[0],
+            "contact(robot::leg_1,robot::platform).force.normal");
+  EXPECT_EQ(nearest_channels(scene, "contact(robot::leg_1,robot::leg_2).force.nrmal", 1)[0],
+            "contact(robot::leg_1,robot::leg_2).force.normal");
+  EXPECT_TRUE(find_channels(scene, "contact(robot::leg_1).count").empty());
+  EXPECT_EQ(nearest_channels(scene, "contact(robot::leg_1).count").size(), 3u);
+}
+
+TEST(Pairs, SayWhyTheyNeverTouch) {
+  Scene scene = touching_robot();
+  const ContactPair legs{ContactParty{true, 0}, ContactParty{true, 1}},
+      itself{ContactParty{true, 0}, ContactParty{true, 0}},
+      platform{ContactParty{true, 0}, ContactParty{false, 1}},
+      base{ContactParty{false, 0}, ContactParty{true, 0}};
+  EXPECT_EQ(why_never_touching(scene, legs), "");
+  EXPECT_EQ(why_never_touching(scene, platform), "");
+  EXPECT_EQ(why_never_touching(scene, base), "'robot::base' has no <collision>");
+  EXPECT_EQ(why_never_touching(scene, itself), "self_contact is not among the effects");
+  scene.rods[1].surface.category_bitmask = scene.rods[1].surface.collide_bitmask = 2;
+  scene.rods[0].surface.category_bitmask = scene.rods[0].surface.collide_bitmask = 4;
+  EXPECT_EQ(why_never_touching(scene, legs), "their bitmasks keep them apart");
+  scene.rods[0].without.emplace_back("contact");
+  EXPECT_EQ(why_never_touching(scene, platform), "'robot::leg_1' is <without>contact</without>");
+}
+
 TEST(Channels, NumberTheAxesOfAJoint) {
   Scene scene;
   scene.joints.resize(2);

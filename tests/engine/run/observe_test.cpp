@@ -106,6 +106,69 @@ TEST(Interpolate, KeepsTheGridOfTheLaterStateWhenItChanged) {
   EXPECT_LT((half.rods[0].points[1].position - b.rods[0].points[1].position).norm(), kExact);
 }
 
+/// Rod 0 touches link 1 at two points and rod 1 at one; links 2 and 1 touch each other.
+Snapshot touching() {
+  Snapshot snapshot;
+  ContactSample& contact = snapshot.contact;
+  ContactPoint point;
+  point.normal = Vec3::UnitZ();
+  point.other = {false, 1};
+  point.position = Vec3(1, 0, 0);
+  point.force = Vec3(0.5, 0, 3);
+  point.slip = Vec3(0.1, 0, 0);
+  point.gap = -1e-4;
+  contact.points.push_back(point);
+  point.position = Vec3(2, 0, 0);
+  point.force = Vec3(-0.5, 0, 1);
+  point.slip = Vec3(0, -0.2, 0);
+  point.gap = -2e-4;
+  contact.points.push_back(point);
+  point.other = {true, 1};
+  point.force = Vec3(0, 0, 7);
+  contact.points.push_back(point);
+  LinkContact link;
+  link.link = 2;
+  link.other = 1;
+  link.force = Vec3(0, 0, 5);
+  contact.links.push_back(link);
+  contact.distances.push_back(
+      {{ContactParty{false, 1}, ContactParty{true, 0}}, -3e-4, Vec3::Zero()});
+  contact.distances.push_back(
+      {{ContactParty{true, 0}, ContactParty{false, 3}}, 0.02, Vec3(4, 5, 6)});
+  return snapshot;
+}
+
+double of_pair(const ContactPair& pair, Quantity quantity, int component = 0) {
+  Channel c = channel(ChannelEntity::kContactPair, quantity, component);
+  c.pair = pair;
+  return evaluate(c, Scene{}, touching());
+}
+
+TEST(Evaluate, SumsUpThePointsOfAPair) {
+  const ContactParty rod{true, 0}, link{false, 1};
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kContactCount), 2);
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kForce, 2), 4);
+  EXPECT_EQ(of_pair({link, rod}, Quantity::kForce, 2), -4);
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kForce, 0), 0);
+  EXPECT_EQ(of_pair({link, rod}, Quantity::kContactForce), 4);
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kContactFriction), 1);
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kPosition, 0), 1.25);  // (3 * 1 + 1 * 2) / 4
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kContactSlip), 0.2);
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kContactPenetration), 3e-4);
+  EXPECT_EQ(of_pair({rod, link}, Quantity::kContactGap), -3e-4);
+  EXPECT_EQ(of_pair({rod, {true, 1}}, Quantity::kContactForce), 7);
+  EXPECT_EQ(of_pair({link, {false, 2}}, Quantity::kForce, 2), -5);
+}
+
+TEST(Evaluate, OfAPairThatDoesNotTouchIsWhereItIsNearest) {
+  const ContactPair apart{ContactParty{true, 0}, ContactParty{false, 3}};
+  EXPECT_EQ(of_pair(apart, Quantity::kContactCount), 0);
+  EXPECT_EQ(of_pair(apart, Quantity::kContactGap), 0.02);
+  EXPECT_EQ(of_pair(apart, Quantity::kContactPenetration), 0);
+  EXPECT_EQ(of_pair(apart, Quantity::kPosition, 1), 5);
+  EXPECT_EQ(of_pair({ContactParty{true, 1}, ContactParty{true, 1}}, Quantity::kPosition), 0);
+}
+
 TEST(PointAt, ErrorFallsWithTheFourthPowerOfTheSpacing) {
   const auto error = [](int n) {
     const double s = (1 + 0.5) / n, angle = s * kPi / 2;
