@@ -17,6 +17,8 @@ enum class Method { kAuto, kShooting, kStrain, kCollocation };
 const char* method_name(Method method);
 
 enum class ArcIntegrator { kEuler, kRk4, kGauss2, kGauss4, kGauss6 };
+/// Polynomials of method strain, or splines of method collocation.
+enum class Basis { kLegendre, kChebyshev, kBspline, kNurbs };
 enum class SchemeKind {
   kBackwardEuler,
   kBdf2,
@@ -45,6 +47,7 @@ struct SolverSpec {
   std::optional<int> order;                 ///< strain: highest degree of the polynomials
   std::optional<int> degree;                ///< collocation: of the splines
   std::optional<int> elements;              ///< strain, collocation: pieces per rod
+  std::optional<Basis> basis;               ///< names for spaces of functions; see scene-format.md
   Place space_place;                        ///< of all these
   std::optional<SchemeKind> scheme;         ///< default esdirk32
   std::optional<double> alpha, rho_inf;

@@ -36,11 +36,12 @@ Method fitting_method(const SolverSpec& solver, std::string& why) {
     why = "auto: <space> is shooting's";
     return Method::kShooting;
   }
-  if (solver.order) {
+  const bool splines = solver.basis == Basis::kBspline || solver.basis == Basis::kNurbs;
+  if (solver.order || (solver.basis && !splines)) {
     why = "auto: <space> is the strain basis's";
     return Method::kStrain;
   }
-  if (solver.degree) {
+  if (solver.degree || splines) {
     why = "auto: <space> is collocation's";
     return Method::kCollocation;
   }

@@ -322,6 +322,8 @@ void check_space(Reading& r) {
   belongs(solver.integrator.has_value(), "integrator", {Method::kShooting});
   belongs(solver.order.has_value(), "order", {Method::kStrain});
   belongs(solver.degree.has_value(), "degree", {Method::kCollocation});
+  const bool splines = solver.basis == Basis::kBspline || solver.basis == Basis::kNurbs;
+  belongs(solver.basis.has_value(), "basis", {splines ? Method::kCollocation : Method::kStrain});
   belongs(solver.elements.has_value(), "elements", {Method::kStrain, Method::kCollocation});
 }
 

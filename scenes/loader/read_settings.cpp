@@ -73,6 +73,10 @@ constexpr Word<ArcIntegrator> kIntegrators[] = {{"euler", ArcIntegrator::kEuler}
                                                 {"gauss2", ArcIntegrator::kGauss2},
                                                 {"gauss4", ArcIntegrator::kGauss4},
                                                 {"gauss6", ArcIntegrator::kGauss6}};
+constexpr Word<Basis> kBases[] = {{"legendre", Basis::kLegendre},
+                                  {"chebyshev", Basis::kChebyshev},
+                                  {"bspline", Basis::kBspline},
+                                  {"nurbs", Basis::kNurbs}};
 constexpr Word<Method> kMethods[] = {{"auto", Method::kAuto},
                                      {"shooting", Method::kShooting},
                                      {"strain", Method::kStrain},
@@ -101,6 +105,7 @@ void read_space(Reading& r, const Node& node) {
   };
   solver.points = count("points", kMostPoints);
   solver.integrator = choose(kIntegrators, node.value("integrator"));
+  solver.basis = choose(kBases, node.value("basis"));
   solver.order = count("order", kHighestOrder);
   solver.degree = count("degree", kHighestDegree, kLowestDegree);
   solver.elements = count("elements", kMostElements);

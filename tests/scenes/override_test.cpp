@@ -145,6 +145,13 @@ TEST(Options, KeepAResolutionForTheMethodItBelongsTo) {
   EXPECT_TRUE(has_code(strain, "W508")) << "order is no setting of shooting";
   EXPECT_FALSE(has_code(load_text(solved("points=\"5\""), options), "W508"));
   EXPECT_FALSE(has_code(load_text(solved("order=\"8\"")), "W508"));
+  EXPECT_TRUE(has_code(load_text(solved("basis=\"nurbs\""), options), "W508"));
+  options.method = "collocation";
+  EXPECT_FALSE(has_code(load_text(solved("basis=\"nurbs\""), options), "W508"));
+  EXPECT_FALSE(has_code(load_text(solved("basis=\"bspline\""), options), "W508"));
+  EXPECT_TRUE(has_code(load_text(solved("basis=\"chebyshev\""), options), "W508"));
+  options.method = "strain";
+  EXPECT_FALSE(has_code(load_text(solved("basis=\"chebyshev\""), options), "W508"));
   EXPECT_EQ(error_codes(load_text(solved("order=\"80\""))), std::vector<std::string>{"E509"});
 }
 
