@@ -103,48 +103,6 @@ double RodContacts::lowest(const Rod& rod, std::size_t obstacle, std::size_t cel
   return best;
 }
 
-ContactPair RodContacts::pair_of(const Rod& rod, const Obstacle& obstacle) const {
-  const int own = static_cast<int>(rod.index);
-  if (obstacle.rod < 0) return {ContactParty{true, own}, ContactParty{false, obstacle.link}};
-  const Rod& other = rods_[static_cast<std::size_t>(obstacle.rod)];
-  return {ContactParty{true, own}, ContactParty{true, static_cast<int>(other.index)}};
-}
-
-/// How near a pair is, wherever it is nearest. Infinitely far where nothing is to meet.
-PairDistance RodContacts::measure(const ContactPair& pair) const {
-  PairDistance out;
-  out.pair = pair;
-  out.gap = std::numeric_limits<double>::infinity();
-  for (const Rod& rod : rods_)
-    for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
-      const Obstacle& obstacle = rod.obstacles[o];
-      if (!same_pair(pair, pair_of(rod, obstacle))) continue;
-      const std::size_t cells = rod.side->contact_nodes().size() - 1;
-      const auto look = [&](std::size_t cell, double xi) {
-        const Distance at = distance(rod, o, cell, xi);
-        if (at.d - rod.radius >= out.gap) return;
-        out.gap = at.d - rod.radius;
-        out.position = point(rod, cell, xi) - rod.radius * at.n;
-      };
-      std::vector<double> ends(cells + 1);
-      for (std::size_t c = 0; c <= cells; ++c) {
-        ends[c] = c < cells ? distance(rod, o, c, 0).d : distance(rod, o, c - 1, 1).d;
-        c < cells ? look(c, 0) : look(c - 1, 1);
-      }
-      for (std::size_t c = 0; c < cells; ++c) {
-        // no walk along the cell leads nearer than this (see scan())
-        const double walk = (obstacle.itself ? 2.2 : 1.1) * length(rod, c);
-        const double bound =
-            std::isfinite(ends[c + 1]) ? 0.5 * (ends[c] + ends[c + 1] - walk) : ends[c] - walk;
-        if (bound - rod.radius >= out.gap) continue;
-        double xi = 0;
-        lowest(rod, o, c, xi);
-        look(c, xi);
-      }
-    }
-  return out;
-}
-
 double RodContacts::moved(const Rod& rod, const Scan& since) const {
   const std::vector<NodeState>& nodes = rod.side->contact_nodes();
   if (since.nodes.size() != nodes.size()) return std::numeric_limits<double>::infinity();
@@ -390,7 +348,8 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
     const RodContact contact = new_contact(rod, o, cell, xi);
     // what had sunk before may lie deep
     const double depth = rod.radius + contact.sunk - d;
-    if (depth > fine) changes.push_back({depth / rod.radius, index, -1, false, contact});
+    if (depth > fine)
+      changes.push_back({depth / rod.radius, index, -1, false, contact});
   };
   std::vector<double> xi(cells), low(cells);
   for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
