@@ -130,21 +130,28 @@ double RodContacts::beyond(const Rod& rod, const Obstacle& obstacle, std::size_t
 
 /// e of engine/rod/contact.h for a point of a rod.
 double RodContacts::sunk(const Rod& rod, const RodContact& contact) const {
-  if (left_ == 0 || rod.begun.empty()) return 0;
+  if (left_ == 0 || rod.begun.empty() || contact.give > 0) return 0;
+  return left_ * std::min(0.0, begun_distance(rod, contact) - rod.radius);
+}
+
+/// Of the point from what it touches when the step began.
+double RodContacts::begun_distance(const Rod& rod, const RodContact& contact) const {
   const auto o = static_cast<std::size_t>(contact.surface);
   const Obstacle& obstacle = rod.obstacles[o];
   const Vec3 x = point(rod, rod.begun, contact.cell, contact.xi);
-  double d = 0;
   if (obstacle.rod >= 0) {
     const Rod& other = rods_[static_cast<std::size_t>(obstacle.rod)];
-    d = foot(other, other.begun, x, beyond(rod, obstacle, contact.cell, contact.xi)).at.d;
-  } else {
-    const Surface& surface = obstacle.surface;
-    d = distance_to(surface, obstacle.body < 0 ? surface.X_WC : rod.start.bodies[o] * surface.X_WC,
-                    x)
-            .d;
+    return foot(other, other.begun, x, beyond(rod, obstacle, contact.cell, contact.xi)).at.d;
   }
-  return left_ * std::min(0.0, d - rod.radius);
+  const Surface& surface = obstacle.surface;
+  const Pose X_WC = obstacle.body < 0 ? surface.X_WC : rod.start.bodies[o] * surface.X_WC;
+  return distance_to(surface, X_WC, x).d;
+}
+
+/// Where damping holds back what leaves, a point may let go before it is out again: it touches anew
+/// only as it comes nearer.
+bool RodContacts::comes_nearer(const Rod& rod, const RodContact& contact, double d) const {
+  return contact.lag == 0 || rod.begun.empty() || d < begun_distance(rod, contact);
 }
 
 Distance RodContacts::distance(const Rod& rod, std::size_t o, std::size_t cell, double xi) const {

@@ -214,6 +214,8 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
   contact.may_rest = eased_ > 0;
   contact.lever = -rod.radius * distance(rod, obstacle, cell, xi).n;
   contact.axis = tangent(rod, cell, xi);
+  contact.give = rod.obstacles[obstacle].give;
+  if (rates_) contact.lag = rod.obstacles[obstacle].lag;
   contact.sunk = sunk(rod, contact);
   const bool fixed = rod.obstacles[obstacle].fixed();
   if (fixed && rod.side->owns_forces()) return contact;
@@ -348,7 +350,7 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
     const RodContact contact = new_contact(rod, o, cell, xi);
     // what had sunk before may lie deep
     const double depth = rod.radius + contact.sunk - d;
-    if (depth > fine)
+    if (depth > fine && comes_nearer(rod, contact, d))
       changes.push_back({depth / rod.radius, index, -1, false, contact});
   };
   std::vector<double> xi(cells), low(cells);

@@ -133,11 +133,13 @@ void RodContacts::give_surfaces(Rod& rod) {
     throw std::invalid_argument("rod '" + rod.rod->spec->name +
                                 "' may touch something: no method in a plane can");
   std::vector<Surface> surfaces;
+  bool rates = friction_;  // what neither rubs nor is damped needs none
   for (const Obstacle& obstacle : rod.obstacles) {
+    rates = rates || obstacle.lag > 0;
     surfaces.push_back(obstacle.surface);
     robot_.rods_meet = robot_.rods_meet || !obstacle.fixed() || !rod.side->owns_forces();
   }
-  rod.side->set_surfaces(surfaces, rod.radius, friction_);
+  rod.side->set_surfaces(surfaces, rod.radius, rates);
 }
 
 }  // namespace cprsim

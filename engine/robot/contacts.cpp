@@ -237,12 +237,13 @@ bool RodContacts::touching() const {
 void RodContacts::begin_step() {
   const PhaseTimer timer(any() ? robot_.clock : nullptr, Phase::kContact);
   left_ = 0;
+  rates_ = false;
   eased_ = std::max(0, eased_ - 1);
   for (Rod& rod : rods_) {
     rod.before = rod.side->contacts();
     rod.begun = rod.side->contact_nodes();
     for (RodContact& contact : rod.side->contacts()) {
-      contact.sunk = 0;
+      contact.sunk = contact.lag = 0;
       contact.may_rest = eased_ > 0;
       contact.bound = -1;
       if (lagged_)
@@ -258,29 +259,49 @@ void RodContacts::begin_step() {
 
 void RodContacts::begin_stage(double since) {
   left_ = recovery_ > 0 ? std::exp(-since / recovery_) : 0;
+  rates_ = true;
   for (Rod& rod : rods_)
-    for (RodContact& contact : rod.side->contacts())
-      if (contact.role != ContactRole::kEcho) contact.sunk = sunk(rod, contact);
+    for (RodContact& contact : rod.side->contacts()) {
+      if (contact.role == ContactRole::kEcho) continue;
+      contact.sunk = sunk(rod, contact);
+      contact.lag = rod.obstacles[static_cast<std::size_t>(contact.surface)].lag;
+    }
+}
+
+bool RodContacts::changed(const Rod& rod, bool soft_too) {
+  const auto same_place = [](const RodContact& a, const RodContact& b) {
+    // a point in a cell slides along its rod; a node comes or goes
+    return a.surface == b.surface &&
+           (a.at_node() && b.at_node() ? a.cell == b.cell : std::abs(order(a) - order(b)) <= 1);
+  };
+  // echoes change with the contacts whose they are
+  const auto of_interest = [&](const std::vector<RodContact>& all,
+                               const std::vector<RodContact>& others) {
+    std::vector<RodContact> kept;
+    for (const RodContact& c : all) {
+      const bool comes = std::none_of(others.begin(), others.end(), [&](const RodContact& other) {
+        return other.role != ContactRole::kEcho && same_place(c, other);
+      });
+      const bool passed_over = !soft_too && c.give > 0 && comes;
+      if (c.role != ContactRole::kEcho && !passed_over) kept.push_back(c);
+    }
+    return kept;
+  };
+  const std::vector<RodContact> now = of_interest(rod.side->contacts(), rod.before),
+                                before = of_interest(rod.before, rod.side->contacts());
+  const auto alike = [&](const RodContact& a, const RodContact& b) {
+    return a.grip == b.grip && same_place(a, b);
+  };
+  return now.size() != before.size() || !std::equal(now.begin(), now.end(), before.begin(), alike);
 }
 
 bool RodContacts::changed() const {
-  return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) {
-    // echoes change with the contacts whose they are
-    std::vector<RodContact> now = rod.side->contacts(), before = rod.before;
-    for (std::vector<RodContact>* contacts : {&now, &before})
-      contacts->erase(
-          std::remove_if(contacts->begin(), contacts->end(),
-                         [](const RodContact& c) { return c.role == ContactRole::kEcho; }),
-          contacts->end());
-    const auto alike = [](const RodContact& a, const RodContact& b) {
-      // a point in a cell slides along its rod; a node comes or goes
-      const bool same_place =
-          a.at_node() && b.at_node() ? a.cell == b.cell : std::abs(order(a) - order(b)) <= 1;
-      return a.surface == b.surface && a.grip == b.grip && same_place;
-    };
-    return now.size() != before.size() ||
-           !std::equal(now.begin(), now.end(), before.begin(), alike);
-  });
+  return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return changed(rod, true); });
+}
+
+bool RodContacts::struck() const {
+  return std::any_of(rods_.begin(), rods_.end(),
+                     [](const Rod& rod) { return changed(rod, false); });
 }
 
 bool RodContacts::leapt() const {
@@ -311,7 +332,9 @@ std::string RodContacts::overlap() {
       for (std::size_t c = 0; c + 1 < rod.scan.nodes.size(); ++c) {
         double xi = 0;
         const double gap = lowest(rod, o, c, xi) - rod.radius;
-        if (gap < -kContactTolerance * rod.radius)
+        // what gives may be sunk into
+        const double most = rod.obstacles[o].give > 0 ? 0.5 : kContactTolerance;
+        if (gap < -most * rod.radius)
           return "rod '" + rod.rod->spec->name + "' begins " +
                  (rod.obstacles[o].itself    ? "in its own way"
                   : rod.obstacles[o].rod < 0 ? "inside '" + rod.obstacles[o].name + "'"

@@ -77,6 +77,9 @@ class RodContacts {
   /// Whether points came or went, stuck or slipped since begin_step().
   bool changed() const;
 
+  /// The same, but what gives may come and go: no force jumps to what would stop the rod at once.
+  bool struck() const;
+
   /// Whether something may have passed through an obstacle since begin_step().
   bool leapt() const;
 
@@ -151,6 +154,8 @@ class RodContacts {
     bool drop = false;
     RodContact contact;
   };
+
+  static bool changed(const Rod& rod, bool soft_too);
 
   static bool touches(const Rod& rod) { return !rod.side->contacts().empty(); }
 

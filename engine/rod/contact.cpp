@@ -18,8 +18,11 @@ Distance distance_to(const Surface& surface, const Pose& X_WC, const Vec3& x) {
   return carried((*surface.mesh)(X_WC.inverse() * x), X_WC.R);
 }
 
-GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
-                   const ContactScale& scale) {
+namespace {
+
+/// (3) to (5), of what is rigid.
+GripRows rigid_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
+                    const ContactScale& scale) {
   const Mat3 P = Mat3::Identity() - n * n.transpose();
   const Vec3 f = contact.force / scale.force, rate = u / scale.rate;
   GripRows row;
@@ -71,6 +74,27 @@ GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const V
     row.by_force -= contact.friction / scale.force * along * n.transpose();
   }
   return row;
+}
+
+}  // namespace
+
+GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
+                   const ContactScale& scale) {
+  if (contact.give == 0) return rigid_rows(contact, gap, n, u, scale);
+  // (7)
+  const Vec3 yields = contact.give * contact.force + contact.lag * u;
+  GripRows row = rigid_rows(contact, gap + n.dot(yields), n, u, scale);
+  row.by_n += row.by_gap * yields.transpose();
+  row.by_u += contact.lag * row.by_gap * n.transpose();
+  row.by_force += contact.give * row.by_gap * n.transpose();
+  return row;
+}
+
+double contact_loss(const RodContact& contact, const ContactRows& rows) {
+  if (contact.give == 0) return -contact.force.dot(rows.slip);
+  const double rate = rows.at.n.dot(rows.slip);
+  const Vec3 rubs = rows.slip - rate * rows.at.n;
+  return contact.lag / contact.give * rate * rate - contact.force.dot(rubs);
 }
 
 ContactWeights::ContactWeights(double xi)

@@ -127,6 +127,9 @@ struct GripRows {
 GripRows grip_rows(const RodContact& contact, double gap, const Vec3& n, const Vec3& u,
                    const ContactScale& scale);
 
+/// What friction, and what the damper of (7), take out, W.
+double contact_loss(const RodContact& contact, const ContactRows& rows);
+
 /// u of (6) for a point at xi with the lever l.
 Vec3 contact_velocity(double xi, const Vec3& l, const ContactEnds& ends);
 

@@ -185,7 +185,7 @@ double NodalContacts::friction_power() const {
   double power = 0;
   if (!friction_ || !host_.stage_rates().dynamic()) return power;
   for (std::size_t i = 0; i < std::min(rows_.size(), contacts_.size()); ++i)
-    if (contacts_[i].role != ContactRole::kEcho) power -= contacts_[i].force.dot(rows_[i].slip);
+    if (contacts_[i].role != ContactRole::kEcho) power += contact_loss(contacts_[i], rows_[i]);
   return power;
 }
 

@@ -345,7 +345,7 @@ RodEnergy ShootingRod::energy() const {
   }
   if (touch_ && touch_->friction && rates_.dynamic())
     for (std::size_t i = 0; i < std::min(touch_->rows.size(), touch_->contacts.size()); ++i)
-      e.damping_power -= touch_->contacts[i].force.dot(touch_->rows[i].slip);
+      e.damping_power += contact_loss(touch_->contacts[i], touch_->rows[i]);
   // Energy that enters per unit feed: the base section's traction works on the inflow, which brings
   // strain energy and weight along.
   const NodeState& base = nodes_.front();

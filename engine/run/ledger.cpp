@@ -76,6 +76,25 @@ double EnergyLedger::drive_power(double t, bool before) const {
   return power;
 }
 
+namespace {
+
+/// What the springs of contact hold, J.
+double contact_energy(const RobotRod& rod) {
+  TouchingRod* side = rod.model->touching();
+  if (!side || !side->may_touch()) return 0;
+  const std::vector<RodContact>& contacts = side->contacts();
+  const std::vector<ContactRows>& rows = side->contact_state();
+  double energy = 0;
+  for (std::size_t i = 0; i < std::min(contacts.size(), rows.size()); ++i) {
+    if (contacts[i].role == ContactRole::kEcho || contacts[i].give == 0) continue;
+    const double depth = std::max(0.0, rod.section.half_width - rows[i].at.d);
+    energy += 0.5 * depth * depth / contacts[i].give;
+  }
+  return energy;
+}
+
+}  // namespace
+
 void EnergyLedger::sum_up() {
   EnergySample& e = sample_;
   e.kinetic = e.elastic = e.gravity = 0;
@@ -88,7 +107,7 @@ void EnergyLedger::sum_up() {
   for (const RobotRod& rod : robot_.rods) {
     const RodEnergy own = rod.model->energy();
     e.kinetic += own.kinetic;
-    e.elastic += own.elastic;
+    e.elastic += own.elastic + contact_energy(rod);
     e.gravity += own.gravity;
   }
   if (free_bodies_) {

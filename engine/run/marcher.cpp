@@ -192,6 +192,7 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     if (!report.converged()) return out;
     finish_stage(i);
     out.touched = out.touched || (touchable && contacts_.changed());
+    out.struck = out.struck || (touchable && contacts_.struck());
     past_.push_back({time, equations_.unknowns()});
     losses.push_back(ledger.damping_power());
     works.push_back(ledger.drive_power(time, true));

@@ -35,6 +35,7 @@ class Marcher {
   struct Outcome {
     bool converged = false;
     bool touched = false;  ///< contacts came, went, stuck or slipped
+    bool struck = false;   ///< rigid ones among them, which stop at once
     bool leapt = false;    ///< a rod may have passed through something
     SolveReport report;    ///< of the last solve; iterations and counts summed over the step
     double error = 0;  ///< estimated local error, dimensionless (length: rod length; angle: rad)

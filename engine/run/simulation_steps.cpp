@@ -57,14 +57,17 @@ void Simulation::Parts::soften(bool touched) {
 bool Simulation::Parts::contacts_object(const Marcher::Outcome& outcome, double step,
                                         double& target) {
   const bool impact = outcome.converged && cushioned == 0 &&
-                      (outcome.touched || gain(t + step, outcome) > kMostGain);
+                      (outcome.struck || gain(t + step, outcome) > kMostGain);
   // long steps are for flight
   const bool far = outcome.converged && outcome.touched && plan.adaptive &&
                    step > scene.max_step_size * (1 + 1e-9);
   if (!outcome.leapt && !impact && !far) return false;
   marcher.reject();
   ++statistics.rejected;
-  if (outcome.leapt || far) {
+  // what gives can be followed into contact, in shorter steps
+  const bool softly = impact && !outcome.struck && plan.adaptive &&
+                      step > kCushion * scene.max_step_size * (1 + 1e-9);
+  if (outcome.leapt || far || softly) {
     target = 0.5 * step;
     return true;
   }

@@ -26,6 +26,7 @@ class ContactCheck {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       for (const ColliderSpec& collider : scene.bodies[b].colliders)
         if (met(collider)) check(collider, scene.bodies[b].name, !flying_[b] || among_rods_[b]);
+    check_softness();
     for (std::size_t a = 0; a < scene.rods.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)
         if (touches(scene.rods[a]) && touches(scene.rods[b]) &&
@@ -68,6 +69,21 @@ class ContactCheck {
            std::any_of(r_.scene.rods.begin(), r_.scene.rods.end(), [&](const RodSpec& rod) {
              return touches(rod) && may_touch(rod.surface, collider.surface);
            });
+  }
+
+  /// A damper needs a spring beside it, on one side or the other.
+  void check_softness() {
+    bool springs = false;
+    for (const RodSpec& rod : r_.scene.rods)
+      springs = springs || rod.surface.stiffness > 0;
+    for (const BodySpec& body : r_.scene.bodies)
+      for (const ColliderSpec& collider : body.colliders)
+        springs = springs || collider.surface.stiffness > 0;
+    if (springs) return;
+    for (const RodSpec& rod : r_.scene.rods)
+      if (rod.surface.damping > 0)
+        r_.report.at(Severity::kNote, "W592", rod.place, kRodCaret,
+                     "<kd> of '" + rod.name + "' damps nothing: without <kp> contact is rigid");
   }
 
   void check(const ColliderSpec& collider, const std::string& body, bool within_reach) {

@@ -200,6 +200,11 @@ SurfaceSpec read_surface(const Node* node) {
   if (const Node* bounce = node->child("bounce"))
     surface.restitution = number_of(bounce->child("restitution_coefficient"), 0);
   if (const Node* contact = node->child("contact")) {
+    for (const char* engine : {"bullet", "ode"})
+      if (const Node* soft = contact->child(engine)) {
+        surface.stiffness = number_of(soft->child("kp"), surface.stiffness);
+        surface.damping = number_of(soft->child("kd"), surface.damping);
+      }
     surface.collide_bitmask =
         static_cast<unsigned>(number_of(contact->child("collide_bitmask"), 0xffff));
     surface.category_bitmask =

@@ -46,6 +46,21 @@ TEST(ContactPairs, ThatNeverTouchAreAWarning) {
   EXPECT_TRUE(has_code(result, "W512"));
 }
 
+TEST(SoftContact, IsReadFromEitherEngine) {
+  const LoadResult ode =
+      load_on_floor("", "<surface><contact><ode><kp>2e4</kp><kd>5</kd></ode></contact></surface>");
+  ASSERT_TRUE(ode.scene) << to_text(ode.diagnostics);
+  EXPECT_EQ(ode.scene->rods.at(0).surface.stiffness, 2e4);
+  EXPECT_EQ(ode.scene->rods.at(0).surface.damping, 5);
+  EXPECT_EQ(to_text(ode.diagnostics).find("<kp>"), std::string::npos);
+  const LoadResult bullet =
+      load_on_floor("", "<surface><contact><bullet><kp>1e5</kp></bullet></contact></surface>");
+  EXPECT_EQ(bullet.scene->rods.at(0).surface.stiffness, 1e5);
+  const LoadResult damped =
+      load_on_floor("", "<surface><contact><ode><kd>5</kd></ode></contact></surface>");
+  EXPECT_TRUE(has_code(damped, "W592")) << "a damper without a spring";
+}
+
 TEST(ContactPairs, NeedTwoNames) {
   EXPECT_EQ(
       error_codes(load_on_floor(

@@ -61,6 +61,11 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip) {
   robot.rods[1].model->touching()->contacts() = {
       contact_at(1, 0, grip, numbers), contact_at(1, 0.3, grip, numbers),
       contact_at(2, 0.8, grip, numbers), contact_at(4, 0, grip, numbers)};
+  // two of them give
+  for (std::size_t i : {1, 3}) {
+    robot.rods[1].model->touching()->contacts()[i].give = 0.05;
+    robot.rods[1].model->touching()->contacts()[i].lag = 0.02;
+  }
   TouchingRod& side = *robot.rods[1].model->touching();
   if (side.owns_forces()) return;
   robot.rods_meet = true;
@@ -178,7 +183,25 @@ TEST(ContactDirection, IsExactOnEveryBranchOfFriction) {
     contact.may_rest = true;
     contact.held = 0.9 * c.force;
     EXPECT_LT(rows_error(contact, c.slip), 1e-8) << c.force.transpose() << ", " << c.bound;
+    RodContact soft = contact;
+    soft.give = 0.03;
+    soft.lag = 0.01;
+    EXPECT_LT(rows_error(soft, c.slip), 1e-8) << c.force.transpose() << ", " << c.bound;
   }
+}
+
+// Where its rows hold, the force is that of the spring and the damper.
+TEST(ContactDirection, OfWhatGivesIsASpringAndADamper) {
+  const ContactScale scale{0.4, 2.0, 3.0, 0};
+  const double kp = 250, kd = 4, gap = -3e-3;
+  const Vec3 n = Vec3(0.3, -0.2, 0.9).normalized(), u = -0.05 * n + Vec3(0.02, 0.03, 0);
+  RodContact contact;
+  contact.give = 1 / kp;
+  contact.lag = kd / kp;
+  contact.force = (-kp * gap - kd * n.dot(u)) * n;
+  EXPECT_LT(grip_rows(contact, gap, n, u, scale).value.norm(), 1e-15);
+  contact.force *= 1.01;
+  EXPECT_GT(grip_rows(contact, gap, n, u, scale).value.norm(), 1e-6);
 }
 
 // Neither between slip and rest nor where pressure ends do the rows jump.

@@ -68,7 +68,12 @@ enum class Others { kBodies, kRods, kBoth, kItself };
 
 /// Contacts of a rod with itself, at nodes and in cells.
 void touch_itself(std::vector<RodContact>& contacts, Grip grip, Numbers& numbers) {
-  const auto at = [&](std::size_t cell, double xi) { return contact_at(cell, xi, grip, numbers); };
+  const auto at = [&](std::size_t cell, double xi) {
+    RodContact contact = contact_at(cell, xi, grip, numbers);
+    contact.give = xi > 0 ? 0.05 : 0;  // some give
+    contact.lag = xi > 0 ? 0.02 : 0;
+    return contact;
+  };
   contacts = {with_rod(at(0, 0.4), {1, 3, 2, 0.7}, numbers),
               with_rod(at(1, 0), {1, 5, 4, 0.5}, numbers),
               with_rod(at(1, 0.6), {1, 4, 3, 0}, numbers)};
@@ -84,7 +89,12 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip, Others
   robot.rods_meet = true;
   for (RobotRod& rod : robot.rods)
     rod.model->touching()->set_surfaces(surfaces, 0.02, grip != Grip::kSmooth);
-  const auto at = [&](std::size_t cell, double xi) { return contact_at(cell, xi, grip, numbers); };
+  const auto at = [&](std::size_t cell, double xi) {
+    RodContact contact = contact_at(cell, xi, grip, numbers);
+    contact.give = xi > 0 ? 0.05 : 0;  // some give
+    contact.lag = xi > 0 ? 0.02 : 0;
+    return contact;
+  };
   std::vector<RodContact>& first = robot.rods[0].model->touching()->contacts();
   std::vector<RodContact>& middle = robot.rods[1].model->touching()->contacts();
   std::vector<RodContact>& last = robot.rods[2].model->touching()->contacts();
