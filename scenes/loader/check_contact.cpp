@@ -107,12 +107,32 @@ class ContactCheck {
   bool obstacles_ = false;
 };
 
+/// Only contact with rods gives.
+void check_hard_links(Reading& r) {
+  const Scene& scene = r.scene;
+  const bool contact = scene.effects.has(Effect::kContact);
+  for (const BodySpec& body : scene.bodies)
+    for (const ColliderSpec& collider : body.colliders) {
+      const SurfaceSpec& surface = collider.surface;
+      const bool soft = surface.stiffness > 0 || surface.damping > 0;
+      const bool by_rods =
+          std::any_of(scene.rods.begin(), scene.rods.end(), [&](const RodSpec& rod) {
+            return !rod.lacks("contact") && may_touch(rod.surface, surface);
+          });
+      if (soft && contact && !by_rods)
+        r.report.at(Severity::kNote, "W592", collider.place, kCollisionCaret,
+                    "<kp> and <kd> of '" + body.name + "::" + collider.name +
+                        "' are for contact with rods: links among themselves are hard");
+    }
+}
+
 }  // namespace
 
 void check_contact(Reading& r) {
   const bool asked =
       r.scene.effects.has(Effect::kContact) || r.scene.effects.has(Effect::kSelfContact);
   if (asked && !r.scene.rods.empty()) ContactCheck(r).run();
+  check_hard_links(r);
 }
 
 }  // namespace cprsim

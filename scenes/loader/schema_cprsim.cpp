@@ -209,7 +209,7 @@ std::vector<ElementRule> output_elements() {
       {"world", "cprsim:record", "", T::kGroup, "", '*', S::kSupported,
        "Writes channels to files."},
       {"cprsim:record", "channel", "", T::kText, "", '+', S::kSupported,
-       "Channels, with * for any."},
+       "Channels, with * for any; contact(a,b).X is of two that touch."},
       {"cprsim:record", "csv", "", T::kEmpty, "", '?', S::kSupported, "Comma-separated values."},
       {"cprsim:record", "vtk", "", T::kEmpty, "", '?', S::kSupported, "Files for ParaView."},
       {"cprsim:record", "hdf5", "", T::kEmpty, "", '?', S::kSupported,

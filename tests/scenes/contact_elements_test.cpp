@@ -61,6 +61,20 @@ TEST(SoftContact, IsReadFromEitherEngine) {
   EXPECT_TRUE(has_code(damped, "W592")) << "a damper without a spring";
 }
 
+TEST(SoftContact, OfLinksAmongThemselvesIsNoted) {
+  const std::string box = R"(
+    <model name="loose"><link name="box">
+      <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
+      <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry><surface><contact>
+        <ode><kp>1e5</kp></ode><collide_bitmask>2</collide_bitmask><category_bitmask>2</category_bitmask>
+      </contact></surface></collision></link></model>)";
+  const std::string apart =
+      "<surface><contact><collide_bitmask>1</collide_bitmask>"
+      "<category_bitmask>1</category_bitmask></contact></surface>";
+  EXPECT_TRUE(has_code(load_on_floor(box, apart), "W592"));
+  EXPECT_FALSE(has_code(load_on_floor(box), "W592"));
+}
+
 TEST(ContactPairs, NeedTwoNames) {
   EXPECT_EQ(
       error_codes(load_on_floor(
