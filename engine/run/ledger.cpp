@@ -50,6 +50,49 @@ void EnergyLedger::collect_torques(const RobotRod& rod, double t, bool before) {
   }
 }
 
+namespace {
+
+/// Speed that a drive of position or velocity prescribes.
+double prescribed_rate(const JointDrive& drive, double t, bool before) {
+  const ProfileValue value = drive.spec->profile.evaluate(t, before);
+  return drive.spec->quantity == DriveQuantity::kVelocity ? value.value : value.rate;
+}
+
+}  // namespace
+
+/// What such a drive exerts: lambda carries springs, dampers and the like too, which are not its.
+double EnergyLedger::exerted(const JointDrive& drive, double rate) const {
+  const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
+  const Joint::Freedom& freedom = joint.freedoms[static_cast<std::size_t>(drive.freedom)];
+  const auto i = static_cast<Eigen::Index>(drive.freedom);
+  const double along =
+      joint.observe(robot_.body_pose(joint.parent), robot_.body_pose(joint.child)).effort[i];
+  return along - freedom.law.total(*freedom.spec, joint.q[i], rate).value;
+}
+
+/// Where a prescribed speed jumps, what carries masses over is an impulse: the excess of the effort
+/// over what it was. While it acts the speed is the mean of both.
+void EnergyLedger::note_jumps(double t) {
+  jumps_.clear();
+  if (robot_.scene->simulation.mode != Mode::kDynamic) return;
+  for (const JointDrive& drive : robot_.joint_drives) {
+    Jump jump;
+    if (drive.spec->quantity != DriveQuantity::kEffort) {
+      // a robot starts at rest
+      const double from = t > 0 ? prescribed_rate(drive, t, true) : 0;
+      const double to = prescribed_rate(drive, t, false);
+      // not from one piece of a straight line to the next
+      if (std::abs(to - from) > 1e-9 * (std::abs(to) + std::abs(from)))
+        jump = {0.5 * (to - from), exerted(drive, from)};
+    }
+    jumps_.push_back(jump);
+  }
+}
+
+bool EnergyLedger::speeds_jumped() const {
+  return std::any_of(jumps_.begin(), jumps_.end(), [](const Jump& jump) { return jump.half != 0; });
+}
+
 double EnergyLedger::drive_power(double t, bool before) const {
   double power = 0;
   for (const RobotRod& rod : robot_.rods) {
@@ -58,20 +101,16 @@ double EnergyLedger::drive_power(double t, bool before) const {
     if (rod.section.fluid.resists() || !rod.line_loads.empty())
       power += rod.model->energy().fluid_power;
   }
-  for (const JointDrive& drive : robot_.joint_drives) {
-    const Joint& joint = robot_.joints[static_cast<std::size_t>(drive.joint)];
-    const Joint::Freedom& freedom = joint.freedoms[static_cast<std::size_t>(drive.freedom)];
-    const auto i = static_cast<Eigen::Index>(drive.freedom);
-    const ProfileValue value = drive.spec->profile.evaluate(t, before);
+  for (std::size_t k = 0; k < robot_.joint_drives.size(); ++k) {
+    const JointDrive& drive = robot_.joint_drives[k];
     if (drive.spec->quantity == DriveQuantity::kEffort) {
-      power += joint_effort(drive, t, before) * joint.track.v[i];
+      power += joint_effort(drive, t, before) *
+               robot_.joints[static_cast<std::size_t>(drive.joint)].track.v[drive.freedom];
       continue;
     }
-    const double rate = drive.spec->quantity == DriveQuantity::kVelocity ? value.value : value.rate;
-    // lambda carries springs, dampers and the like too, which are not the drive's
-    const double along =
-        joint.observe(robot_.body_pose(joint.parent), robot_.body_pose(joint.child)).effort[i];
-    power += (along - freedom.law.total(*freedom.spec, joint.q[i], rate).value) * rate;
+    const double rate = prescribed_rate(drive, t, before), effort = exerted(drive, rate);
+    power += effort * rate;
+    if (!jumps_.empty()) power -= (effort - jumps_[k].effort) * jumps_[k].half;
   }
   return power;
 }
@@ -142,6 +181,7 @@ void EnergyLedger::open() {
 }
 
 void EnergyLedger::begin_step(double t) {
+  note_jumps(t);
   collect(t, false);
   points_before_ = points_;
   begun_ = t;

@@ -25,6 +25,9 @@ class EnergyLedger {
   /// Loads as they are from t on: after a jump they differ from what close_step saw.
   void begin_step(double t);
 
+  /// Whether a prescribed speed jumped where the step began.
+  bool speeds_jumped() const;
+
   /// What a step that ends at t has exchanged, J: taken out by damping, put in by drives.
   /// @param cushioned what is lost besides counts as taken by an impact
   void close_step(double t, double damping_loss, double drive_work, bool cushioned = false);
@@ -50,8 +53,16 @@ class EnergyLedger {
     Mat3 rotation;
   };
 
+  /// A jump of a prescribed speed at the beginning of a step.
+  struct Jump {
+    double half = 0;    ///< half of it, m/s or rad/s
+    double effort = 0;  ///< of the drive before it
+  };
+
   void collect(double t, bool before);
   void collect_torques(const RobotRod& rod, double t, bool before);
+  double exerted(const JointDrive& drive, double rate) const;
+  void note_jumps(double t);
   double friction_energy() const;
   void sum_up();
 
@@ -66,6 +77,7 @@ class EnergyLedger {
 
   std::vector<Vec3> friction_before_, q_before_;           ///< of joints
   std::vector<std::vector<TendonSample>> tendons_before_;  ///< of rods
+  std::vector<Jump> jumps_;                                ///< of joint drives
   double begun_ = 0;
   double friction_energy_before_ = 0;
   double start_ = 0;

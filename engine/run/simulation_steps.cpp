@@ -148,6 +148,10 @@ void Simulation::Parts::step_dynamic() {
         marcher.restart();
         last_error = 0;
         if (plan.adaptive) h = std::min(h, 1e-3);
+      } else if (ledger.speeds_jumped()) {
+        // the acceleration that this step ends with is that of the jump: nothing is to go on from
+        // it
+        marcher.restart();
       }
       return;
     }

@@ -73,6 +73,31 @@ TEST(Screw, HoldsAThrustWithTheTorqueOfItsLead) {
   EXPECT_NEAR(end.bodies[0].X_WB.p.x(), 3 * 0.02 / (2 * std::numbers::pi), 1e-12);
 }
 
+// A slider is at speed at once, and stops at once: m v²/2 goes in, and comes out again.
+TEST(PositionDrive, GivesAndTakesTheEnergyOfAJumpOfItsSpeed) {
+  constexpr double kSpeed = 0.5, kEnergy = 0.5 * kMass * kSpeed * kSpeed;
+  for (SchemeKind scheme : {SchemeKind::kEsdirk32, SchemeKind::kEsdirk43, SchemeKind::kBdfAlpha,
+                            SchemeKind::kGeneralizedAlpha}) {
+    const auto after = [&](double time) {
+      Scene scene = on_joint(JointKind::kPrismatic);
+      ProfileTerm& ramp = drive(scene, 0, DriveQuantity::kPosition, 0).profile.terms.front();
+      ramp.shape = ShapeOfTime::kRamp;
+      ramp.to = 0.1 * kSpeed;
+      ramp.start = 0.1;
+      ramp.end = 0.2;
+      move_for(scene, time, 1e-6);
+      scene.solver.scheme = scheme;
+      scene.solver.step = 0.01;
+      return run(scene).energy;
+    };
+    const EnergySample going = after(0.15), stopped = after(0.3);
+    EXPECT_NEAR(going.kinetic, kEnergy, 1e-9 * kEnergy) << static_cast<int>(scheme);
+    EXPECT_NEAR(going.work, kEnergy, 1e-9 * kEnergy) << static_cast<int>(scheme);
+    EXPECT_NEAR(stopped.kinetic, 0, 1e-9 * kEnergy) << static_cast<int>(scheme);
+    EXPECT_NEAR(stopped.work, 0, 1e-9 * kEnergy) << static_cast<int>(scheme);
+  }
+}
+
 TEST(EffortDrive, SaturatesAtTheEffortLimit) {
   Scene scene = on_joint(JointKind::kPrismatic);
   scene.joints[0].effort_limit = 2;
