@@ -27,6 +27,7 @@ enum class SchemeKind {
   kTrBdf2,
   kEsdirk32,
   kEsdirk43,
+  kRadau5,
   kIda
 };
 

@@ -15,6 +15,9 @@ constexpr std::size_t kPastKept = 4;  // solutions the predictor may look back o
 constexpr double kLargestWeights =
     12;  // sum of |weights|: beyond, extrapolation amplifies more than it predicts
 
+// of lengths and of a radian: less is round-off
+constexpr double kRoundTolerance = 1e-11;
+
 /// Lagrange weights of the given times at t.
 std::vector<double> lagrange(const std::vector<double>& times, double t) {
   std::vector<double> w(times.size(), 1);
@@ -59,6 +62,11 @@ void Marcher::cushion(bool on) {
 
 // The guess for a solve: the past solutions, extrapolated with as many of them as stays harmless.
 void Marcher::predict(double time) {
+  for (const Solved& solved : past_)
+    if (stepper_.round() > 0 && std::abs(solved.time - time) <= 1e-9 * h_) {
+      equations_.set_unknowns(solved.unknowns);
+      return;
+    }
   for (std::size_t count = std::min(past_.size(), kPastKept); count > 1; --count) {
     std::vector<double> times;
     std::vector<const RobotUnknowns*> unknowns;
@@ -193,9 +201,25 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
     finish_stage(i);
     out.touched = out.touched || (touchable && contacts_.changed());
     out.struck = out.struck || (touchable && contacts_.struck());
-    past_.push_back({time, equations_.unknowns()});
+    const int round = stepper_.round(), last = i + 1 == stages;
+    if (round > 0 && i % round == 0 && i > 0) {
+      // what the round before found is what this one replaces
+      losses.resize(1);
+      works.resize(1);
+    }
+    const std::size_t place = past_accepted_ + static_cast<std::size_t>(round > 0 ? i % round : i);
+    if (past_.size() > place)
+      past_[place] = {time, equations_.unknowns()};
+    else
+      past_.push_back({time, equations_.unknowns()});
     losses.push_back(ledger.damping_power());
     works.push_back(ledger.drive_power(time, true));
+    if (round == 0 || (i + 1) % round != 0) continue;
+    if (round_change() <= kRoundTolerance) break;
+    if (last) {
+      out.report.status = SolveStatus::kIterationLimit;
+      return out;
+    }
   }
   out.converged = true;
   loss_after_ = losses.back();
@@ -204,6 +228,17 @@ Marcher::Outcome Marcher::attempt(double t, double h, const EnergyLedger& ledger
   out.damping_loss = stepper_.integrate(losses) * h;
   out.drive_work = stepper_.integrate(works) * h;
   return out;
+}
+
+// Of a round of stages: what it changed, per length or radian.
+double Marcher::round_change() const {
+  double change = 0;
+  const std::vector<TrackError> errors = track_errors();
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i].coordinates > 0)
+      change =
+          std::max(change, stepper_.change(*tracks_[i], errors[i].coordinates) / errors[i].unit);
+  return change;
 }
 
 // Largest estimated error of a position (per length), a rotation, and of what velocities would add

@@ -79,6 +79,7 @@ class Marcher {
   SolveReport solve_stage(double time);
   SolveReport solve_once(double time);
   double error_estimate() const;
+  double round_change() const;
   void fill_tracks();
   void finish_stage(int i);
 

@@ -12,6 +12,12 @@
 // ESDIRK4(3)6L[2]SA (Kennedy & Carpenter, NASA/TM- 2016-219173), and as the starter after a jump
 // the stiffly accurate SDIRK3 with the same diagonal as ESDIRK3(2) (Alexander, SINUM 14, 1977),
 // which needs no derivative at the start.
+//
+// Radau IIA of order 5 (Hairer & Wanner, Solving ODEs II, table IV.5.6) has a full table A. Its
+// three stages are found one after another, again and again, with the lower factor L of Crout's A =
+// L U in the place of A (van der Houwen & de Swart, SIAM J. Sci. Comput. 18, 1997): in round k
+//   x_i = x_0 + h sum_j A_ij k_j^(k-1) + h sum_(j <= i) L_ij (k_j^(k) - k_j^(k-1))        (2)
+// until nothing changes. Every solve is of the form (1), and what is found is Radau's own.
 #pragma once
 
 #include <vector>
@@ -53,6 +59,14 @@ const DirkTable& esdirk32();
 const DirkTable& esdirk43();
 const DirkTable& sdirk3();
 
+/// A of Radau IIA, order 5, and its lower Crout factor.
+struct RadauTable {
+  double a[3][3] = {}, lower[3][3] = {};
+  double c[3] = {};
+};
+
+const RadauTable& radau5();
+
 /// A bundle of coordinates that a scheme integrates: values and what past steps left behind. The
 /// owner of the coordinates fills x after each solve (and v for rotations), the Stepper the rest.
 struct Track {
@@ -93,7 +107,7 @@ class Stepper {
   /// positions alone, so that an impact cannot add energy.
   void cushion(bool on) { cushioned_ = on; }
 
-  /// Prepares a step. @return the number of implicit solves it takes.
+  /// Prepares a step. @return the number of implicit solves it takes; of Radau, the most.
   int begin_step(double h, const std::vector<Track*>& tracks);
 
   /// Time of solve i within the step, as a fraction of h.
@@ -104,6 +118,13 @@ class Stepper {
 
   /// After x (and for rotations v) is known: x_t, v, a of the stage.
   void finish_stage(int i, const std::vector<Track*>& tracks);
+
+  /// Of a scheme whose stages are found in rounds: how many solves a round has; otherwise 0.
+  int round() const { return rounds() ? 3 : 0; }
+
+  /// After a round: by how much it changed the stage derivatives of a track, times h in x and h² in
+  /// v.
+  double change(const Track& track, Eigen::Index coordinates) const;
 
   /// Estimated local error of the step in x (and h times that in v) of a track; 0 without an
   /// embedded formula.
@@ -132,6 +153,9 @@ class Stepper {
 
   Multistep multistep_coefficients() const;
   void begin_dirk_stage(int i, Track& t) const;
+  void begin_radau_stage(int i, Track& t) const;
+
+  bool rounds() const { return kind() == SchemeKind::kRadau5; }
 
   SchemeKind kind() const { return cushioned_ ? SchemeKind::kBackwardEuler : choice_.kind; }
 

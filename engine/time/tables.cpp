@@ -2,6 +2,7 @@
 // Runge-Kutta tables in time. Their order conditions are tested, with those of the embedded
 // formulas. The embedded weights of sdirk3 are those of the second-order formula on its first two
 // stages.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/time/scheme.h"
@@ -91,7 +92,35 @@ DirkTable make_sdirk3() {
   return finished(t, embedded);
 }
 
+RadauTable make_radau5() {
+  const double r = std::sqrt(6.0);
+  RadauTable t{{{(88 - 7 * r) / 360, (296 - 169 * r) / 1800, (-2 + 3 * r) / 225},
+                {(296 + 169 * r) / 1800, (88 + 7 * r) / 360, (-2 - 3 * r) / 225},
+                {(16 - r) / 36, (16 + r) / 36, 1. / 9}},
+               {},
+               {(4 - r) / 10, (4 + r) / 10, 1}};
+  double upper[3][3] = {};
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      double rest = t.a[i][j];
+      for (int k = 0; k < std::min(i, j); ++k)
+        rest -= t.lower[i][k] * upper[k][j];
+      if (i >= j)
+        t.lower[i][j] = rest;
+      else
+        upper[i][j] = rest / t.lower[i][i];
+    }
+    upper[j][j] = 1;
+  }
+  return t;
+}
+
 }  // namespace
+
+const RadauTable& radau5() {
+  static const RadauTable table = make_radau5();
+  return table;
+}
 
 const DirkTable& tr_bdf2() {
   static const DirkTable table = make_tr_bdf2();

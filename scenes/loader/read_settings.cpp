@@ -88,6 +88,7 @@ constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwar
                                          {"tr_bdf2", SchemeKind::kTrBdf2},
                                          {"esdirk32", SchemeKind::kEsdirk32},
                                          {"esdirk43", SchemeKind::kEsdirk43},
+                                         {"radau5", SchemeKind::kRadau5},
                                          {"ida", SchemeKind::kIda}};
 
 void read_space(Reading& r, const Node& node) {

@@ -287,7 +287,7 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"space", "elements", T::kCount, "1", false, yes,
        "strain, collocation: pieces along each rod."},
       {"time", "scheme", T::kChoice,
-       "bdf_alpha|backward_euler|bdf2|generalized_alpha|tr_bdf2|esdirk32|esdirk43|ida|!radau5",
+       "bdf_alpha|backward_euler|bdf2|generalized_alpha|tr_bdf2|esdirk32|esdirk43|radau5|ida",
        true, yes, "Rule for each time step."},
       {"time", "alpha", T::kNumber, "1", false, yes, "bdf_alpha: -0.5 to 0."},
       {"time", "rho_inf", T::kNumber, "1", false, yes, "generalized_alpha: 0 to 1."},

@@ -23,6 +23,7 @@ RigidBody top(const Vec3& omega) {
 
 /// Enough to see the order, few enough to stay clear of round-off.
 int steps_for(SchemeKind kind) {
+  if (kind == SchemeKind::kRadau5) return 12;
   return kind == SchemeKind::kEsdirk43 ? 60 : 160;
 }
 
@@ -95,8 +96,8 @@ TEST(FreeTop, SpinAboutAPrincipalAxisIsExact) {
       const RigidBody body = spun(kind, omega, 3, 20);  // more than a turn
       const Mat3 R = exp_so3({0.3, -0.4, 0.5}) * exp_so3(3 * omega);
       // 20 steps, each solved to round-off
-      EXPECT_LT((body.R - R).norm(), 1e-12) << to_string(kind) << ", axis " << axis;
-      EXPECT_LT((body.omega - omega).norm(), 1e-12) << to_string(kind) << ", axis " << axis;
+      EXPECT_LT((body.R - R).norm(), 2e-12) << to_string(kind) << ", axis " << axis;
+      EXPECT_LT((body.omega - omega).norm(), 2e-12) << to_string(kind) << ", axis " << axis;
     }
 }
 

@@ -9,7 +9,7 @@ namespace cprsim {
 constexpr SchemeKind kAllSchemes[] = {SchemeKind::kBackwardEuler, SchemeKind::kBdf2,
                                       SchemeKind::kBdfAlpha,      SchemeKind::kGeneralizedAlpha,
                                       SchemeKind::kTrBdf2,        SchemeKind::kEsdirk32,
-                                      SchemeKind::kEsdirk43};
+                                      SchemeKind::kEsdirk43,      SchemeKind::kRadau5};
 
 inline int order_of(SchemeKind kind) {
   switch (kind) {
@@ -19,6 +19,8 @@ inline int order_of(SchemeKind kind) {
       return 3;
     case SchemeKind::kEsdirk43:
       return 4;
+    case SchemeKind::kRadau5:
+      return 5;
     default:
       return 2;
   }
