@@ -115,7 +115,7 @@ std::vector<Setting> schemes() {
   for (const SchemeKind kind :
        {SchemeKind::kBackwardEuler, SchemeKind::kBdf2, SchemeKind::kBdfAlpha, SchemeKind::kBdfAlpha,
         SchemeKind::kGeneralizedAlpha, SchemeKind::kTrBdf2, SchemeKind::kEsdirk32,
-        SchemeKind::kEsdirk43}) {
+        SchemeKind::kEsdirk43, SchemeKind::kRadau5}) {
     Setting setting;
     setting.scheme = kind;
     if (kind == SchemeKind::kBdfAlpha && all.back().scheme == kind) setting.alpha = -0.2;

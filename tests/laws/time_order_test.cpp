@@ -51,6 +51,15 @@ TEST_P(RobotOrder, IsTwoAtLeast) {
   EXPECT_GT(std::log2(coarse / fine), 1.8) << coarse << " " << fine;
 }
 
+// In steps eight times as long; stiff strains cost some of its five orders.
+TEST(Radau5Order, OnARobotIsThreeAtLeast) {
+  const Vec3 reference = plate_after(SchemeKind::kEsdirk43, 2.5e-4);
+  const double coarse = (plate_after(SchemeKind::kRadau5, 0.01) - reference).norm();
+  const double fine = (plate_after(SchemeKind::kRadau5, 0.005) - reference).norm();
+  EXPECT_GT(std::log2(coarse / fine), 3) << coarse << " " << fine;
+  EXPECT_LT(fine, 0.1 * (plate_after(SchemeKind::kEsdirk43, 0.005) - reference).norm());
+}
+
 INSTANTIATE_TEST_SUITE_P(Schemes, RobotOrder,
                          ::testing::Values(SchemeKind::kBdf2, SchemeKind::kBdfAlpha,
                                            SchemeKind::kGeneralizedAlpha, SchemeKind::kTrBdf2,

@@ -80,7 +80,7 @@ TEST(State, GoesOnWithEverySchemeAndMethod) {
   for (const SchemeKind scheme :
        {SchemeKind::kBackwardEuler, SchemeKind::kBdf2, SchemeKind::kBdfAlpha,
         SchemeKind::kGeneralizedAlpha, SchemeKind::kTrBdf2, SchemeKind::kEsdirk32,
-        SchemeKind::kEsdirk43})
+        SchemeKind::kEsdirk43, SchemeKind::kRadau5})
     for (const Method method : {Method::kShooting, Method::kStrain, Method::kCollocation})
       for (const bool fixed : {true, false}) {
         Scene scene = with_every_effect();
