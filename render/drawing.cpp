@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace cprsim {
 
@@ -13,6 +14,9 @@ namespace {
 /// in.
 constexpr double kLeastRings = 40;     // along a rod
 constexpr double kLargestTurn = 0.09;  // rad; above 0.15 the silhouette of a bent rod shows corners
+
+constexpr double kDiskThickness = 0.12;       // of the radius
+const Color kDiskColor(0.62F, 0.64F, 0.67F);  // light metal
 
 Pose pose_of(const Snapshot& now, int body) {
   const auto i = static_cast<std::size_t>(body);
@@ -86,6 +90,27 @@ Ribbon make_tendon(const TendonSpec& tendon, const Tube& rod) {
     ribbon.points.push_back({ring.position + ring.rotation.leftCols<2>() * r, 0.9F});
   }
   return ribbon;
+}
+
+/// A flat cylinder across the rod; nothing for a point mass.
+std::optional<Tube> make_disk(const DiskSpec& disk, const Tube& rod) {
+  const auto beyond = std::find_if(rod.rings.begin(), rod.rings.end(),
+                                   [&](const Tube::Ring& ring) { return ring.s > disk.s - 1e-9; });
+  if (disk.radius <= 0 || beyond == rod.rings.end() || beyond == rod.rings.begin())
+    return std::nullopt;
+  const Tube::Ring& before = *std::prev(beyond);
+  Tube::Ring at = between(before, *beyond, (disk.s - before.s) / (beyond->s - before.s));
+  at.color = kDiskColor;
+  Tube tube;
+  tube.section.size = Vec2(disk.radius, 0);
+  tube.radius = disk.radius;
+  tube.look = rod.look;
+  const Vec3 half = 0.5 * kDiskThickness * disk.radius * at.rotation.col(2);
+  for (const Vec3& side : {Vec3(-half), half}) {
+    tube.rings.push_back(at);
+    tube.rings.back().position += side;
+  }
+  return tube;
 }
 
 std::array<Vec3, 8> corners_of(const TriMesh& mesh) {
@@ -228,14 +253,19 @@ Drawing make_drawing(const Scene& scene, const std::vector<Part>& parts, const S
   drawing.part_poses.reserve(parts.size());
   for (const Part& part : parts)
     drawing.part_poses.push_back(pose_of(now, part.body) * part.X_BV);
+  std::vector<Tube> disks;
   const std::size_t rods = std::min(scene.rods.size(), now.rods.size());
   for (std::size_t i = 0; i < rods; ++i) {
     Tube tube = make_tube(scene.rods[i], look_of_rod(scene.rods[i], i), now.rods[i], decor.color_by,
                           color_range);
     for (const TendonSpec& tendon : scene.tendons)
       if (tendon.rod == static_cast<int>(i)) drawing.ribbons.push_back(make_tendon(tendon, tube));
+    for (const DiskSpec& disk : scene.rods[i].disks)
+      if (auto flat = make_disk(disk, tube)) disks.push_back(std::move(*flat));
     if (tube.rings.size() > 1) drawing.tubes.push_back(std::move(tube));
   }
+  // behind all rods, whose tubes have the rods' numbers
+  drawing.tubes.insert(drawing.tubes.end(), disks.begin(), disks.end());
   for (std::size_t i = 0; i < decor.traces.size(); ++i) {
     Ribbon ribbon = make_ribbon(decor.traces[i], i, now.time);
     if (ribbon.points.size() > 1) drawing.ribbons.push_back(std::move(ribbon));

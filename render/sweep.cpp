@@ -80,7 +80,8 @@ void sweep_front(const Tube& tube, const View& view, int faces, TriMesh& mesh) {
 bool is_thin(const Tube& tube, const View& view, double pixels) {
   constexpr double kThin = 5;      // pixels of radius; beyond, caps and the far side begin to show
   constexpr double kAlong = 0.94;  // cosine; beyond, a half round does not cover the whole
-  if (!is_round(tube) || pixels > kThin) return false;
+  // one of two rings is a disk
+  if (!is_round(tube) || pixels > kThin || tube.rings.size() < 3) return false;
   return std::none_of(tube.rings.begin(), tube.rings.end(), [&](const Tube::Ring& ring) {
     return std::abs(ring.rotation.col(2).dot((view.eye - ring.position).normalized())) > kAlong;
   });

@@ -61,6 +61,12 @@ struct RestSample {
   Vec3 curvature = Vec3::Zero();
 };
 
+/// A rigid thin disk across the rod, its centre on the centreline; without a radius a point mass.
+struct DiskSpec {
+  double s = 1;                 ///< where it is, as a fraction of the rod's length, above 0
+  double mass = 0, radius = 0;  ///< kg, m
+};
+
 enum class EndJoint { kFree, kFixed, kRevolute, kBall, kUniversal };
 
 /// How a rod's end is held. The rod's end frame coincides with `at` when the joint's freedoms are
@@ -90,6 +96,7 @@ struct RodSpec {
   std::vector<RestSample> rest_samples;  ///< instead of it, from 0 to 1; a cubic spline between
   std::optional<DampingSpec> damping;
   std::optional<DragSpec> drag;
+  std::vector<DiskSpec> disks;  ///< by ascending s
   bool gravity = true;
   SurfaceSpec surface;
   std::vector<std::string> without;  ///< effects switched off for this rod

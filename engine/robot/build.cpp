@@ -185,13 +185,24 @@ void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
 // What is not smooth along the rod is a station of it.
 void add_line_loads(RobotRod& rod) {
   if (rod.line_loads.empty()) return;
-  if (!rod.tendons.empty() || rod.length_drive)
+  if (rod.length_drive)
     throw std::invalid_argument("rod '" + rod.spec->name +
-                                "' has a load along it, and tendons or a length drive, too");
+                                "' has a load along it, and a length drive, too");
   for (const LoadSpec* load : rod.line_loads)
     for (const double s : {load->rod_s, *load->to})
       if (s > 0 && s < 1 && std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
         rod.breaks.push_back(s);
+}
+
+// They are fastened to the material, which a length drive pulls through the base.
+void add_disks(RobotRod& rod) {
+  if (rod.spec->disks.empty()) return;
+  if (rod.length_drive)
+    throw std::invalid_argument("the length of rod '" + rod.spec->name +
+                                "' cannot be driven: it carries disks");
+  for (const DiskSpec& disk : rod.spec->disks)
+    if (std::find(rod.breaks.begin(), rod.breaks.end(), disk.s) == rod.breaks.end())
+      rod.breaks.push_back(disk.s);
 }
 
 void add_rods(Robot& robot) {
@@ -214,6 +225,7 @@ void add_rods(Robot& robot) {
       if (load.rod == static_cast<int>(i)) (load.to ? rod.line_loads : rod.loads).push_back(&load);
     add_tendons(scene, i, rod);
     add_line_loads(rod);
+    add_disks(rod);
     rod.gravity = spec.gravity && !spec.lacks("gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);

@@ -35,17 +35,23 @@ enum class CellLaw {
   kExtensibleGeneral,  ///< kExtensible, likewise
   kKirchhoffFluid,     ///< v = v0; a fluid's force in (3), loads along the rod in (3), (4)
   kExtensibleFluid,    ///< stage v lifted, likewise
-  kTendons             ///< stage v lifted, and tendons are part of the law
+  kTendons,            ///< stage v lifted, and tendons are part of the law
+  kTendonsFluid        ///< likewise, with a fluid's force and loads along the rod
 };
+
+constexpr bool has_tendons(CellLaw law) {
+  return law == CellLaw::kTendons || law == CellLaw::kTendonsFluid;
+}
 
 /// Whether stage rates v are unknowns.
 constexpr bool lifts_stretch(CellLaw law) {
-  return law == CellLaw::kExtensible || law == CellLaw::kExtensibleFluid ||
-         law == CellLaw::kTendons || law == CellLaw::kExtensibleGeneral;
+  return law == CellLaw::kExtensible || law == CellLaw::kExtensibleFluid || has_tendons(law) ||
+         law == CellLaw::kExtensibleGeneral;
 }
 
 constexpr bool immersed(CellLaw law) {
-  return law == CellLaw::kKirchhoffFluid || law == CellLaw::kExtensibleFluid;
+  return law == CellLaw::kKirchhoffFluid || law == CellLaw::kExtensibleFluid ||
+         law == CellLaw::kTendonsFluid;
 }
 
 /// Whether all sections of a cell have the model's own coefficients and no rotary inertia.
@@ -82,9 +88,10 @@ struct CellModel : CellSection {
   bool rotary = false;
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
-  FluidSection* fluid = nullptr;     ///< of the cell's stages, for the laws of a fluid
-  bool loaded = false;               ///< whether these have loads along the rod, too
-  TendonSection* tendons = nullptr;  ///< of the cell's stages; only read with kTendons
+  FluidSection* fluid = nullptr;  ///< of the cell's stages, for the laws of a fluid
+  bool loaded = false;            ///< whether these have loads along the rod, too
+  TendonSection* tendons =
+      nullptr;  ///< of the cell's stages; only read where tendons are part of the law
 };
 
 /// One stage: inputs of the balance, unknowns, and what the last evaluation found.

@@ -13,7 +13,7 @@ const CellKernel& cell_kernel_avx512(int stages, CellLaw law);
 const CellKernel& cell_kernel(int stages, CellLaw law) {
 #ifdef CPRSIM_X86_KERNELS
   // fluids and tendons have no copy of this width: it gains a fifth and takes time to compile
-  const bool plain = !immersed(law) && law != CellLaw::kTendons;
+  const bool plain = !immersed(law) && !has_tendons(law);
   if (plain && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
     return cell_kernel_avx512(stages, law);
   if (__builtin_cpu_supports("avx2")) return cell_kernel_avx2(stages, law);

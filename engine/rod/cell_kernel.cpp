@@ -113,7 +113,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
     store(st[j].m, m);
     const M3 R = load_matrix(st[j].R);
     V3 own_m = transposed_times(R, m), own_n = transposed_times(R, load(st[j].n));
-    if constexpr (law == CellLaw::kTendons) {
+    if constexpr (has_tendons(law)) {
       TendonSection& tendons = M.tendons[j];
       evaluate_tendons(tendons, load(st[j].u), load(st[j].v));
       own_m = own_m - load(tendons.moment);
@@ -236,7 +236,7 @@ struct Linearization {
       const V3 Omega = load(st[j].Omega);
       const M3 D =
           right_jacobian_derivative(Omega, load(st[j].w), rotation_coefficients(dot(Omega, Omega)));
-      if constexpr (law == CellLaw::kTendons) {
+      if constexpr (has_tendons(law)) {
         const TendonSection& tendons = M.tendons[j];
         add_curvature(rows, M, j, softened(at[j].C_bt, load_matrix(tendons.moment_u), 1), D);
         add_block(rows, 3 * S + 3 * j, 1.0, softened(at[j].C_bt, load_matrix(tendons.moment_v), 0));
@@ -254,7 +254,7 @@ struct Linearization {
       // (6)
       if constexpr (lifts_stretch(law)) {
         set_zero(rows);
-        if constexpr (law == CellLaw::kTendons) {
+        if constexpr (has_tendons(law)) {
           const TendonSection& tendons = M.tendons[j];
           add_curvature(rows, M, j,
                         softened(at[j].C_se, transpose(load_matrix(tendons.moment_v)), 0), D);
@@ -365,6 +365,8 @@ const CellKernel& CPRSIM_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kExtensibleFluid>[stages - 1];
     case CellLaw::kTendons:
       return kKernels<CellLaw::kTendons>[stages - 1];
+    case CellLaw::kTendonsFluid:
+      return kKernels<CellLaw::kTendonsFluid>[stages - 1];
 #endif
     default:
       break;

@@ -43,6 +43,7 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   forcing_.length = length;
   if (!options_.tendons.empty()) place_tendons();
   if (options_.touches) touch_.reset(new NodalContacts(*this));
+  if (!options_.disks.empty()) place_disks();
   set_unloaded(X_WBase);
 }
 
@@ -136,7 +137,7 @@ NodeState CollocationRod::state_of(const Vec13& y) const {
   return state;
 }
 
-/// Force and moment of all loads at a station; n, m fall by them.
+/// Force and moment of all loads and disks at a station; n, m fall by them.
 Vec6 CollocationRod::load_at(std::size_t station, const Mat3& R) const {
   Vec6 sum = Vec6::Zero();
   for (std::size_t i = 0; i < station_of_.size(); ++i) {
@@ -146,20 +147,22 @@ Vec6 CollocationRod::load_at(std::size_t station, const Mat3& R) const {
     sum.tail<3>() += load.follower ? Vec3(R * load.torque) : load.torque;
   }
   if (touch_) sum += touch_->load_at(station, R);
+  if (disks_) sum -= disks_->jump_at(station);
   return sum;
 }
 
-/// Its derivative by the section's turn, in the left three columns: d(R F) = phi × R F.
-Mat6 CollocationRod::load_by_turn(std::size_t station, const Mat3& R) const {
-  Mat6 by_turn = Mat6::Zero();
+/// Its derivative by the section's motion (phi, dp): d(R F) = phi × R F.
+Mat6 CollocationRod::load_by_motion(std::size_t station, const Mat3& R) const {
+  Mat6 by_motion = Mat6::Zero();
   for (std::size_t i = 0; i < station_of_.size(); ++i) {
     const PointLoad& load = forcing_.loads[i];
     if (station_of_[i] != station || !load.follower) continue;
-    by_turn.block<3, 3>(0, 0) -= hat(R * load.force);
-    by_turn.block<3, 3>(3, 0) -= hat(R * load.torque);
+    by_motion.block<3, 3>(0, 0) -= hat(R * load.force);
+    by_motion.block<3, 3>(3, 0) -= hat(R * load.torque);
   }
-  if (touch_) by_turn.block<3, 3>(3, 0) += touch_->moment_by_turn(station, R);
-  return by_turn;
+  if (touch_) by_motion.block<3, 3>(3, 0) += touch_->moment_by_turn(station, R);
+  if (disks_) by_motion -= disks_->by_motion(station);
+  return by_motion;
 }
 
 /// Before a load at the base.
@@ -244,6 +247,7 @@ void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing)
   for (std::size_t j = 0; j < models_.size(); ++j)
     set_coefficients(sections_[j], models_[j]);
   fluid_.prepare(section_, sections_, rates, forcing_, track_);
+  if (disks_) disks_->prepare(rates, forcing, track_);
   choose_units();
   update_point_inputs();
 }
@@ -256,11 +260,13 @@ void CollocationRod::choose_units() {
     N = std::max(N, point.n().norm());
   for (const PointLoad& load : forcing_.loads)
     N = std::max(N, load.force.norm());
+  if (disks_) N = std::max(N, disks_->weight());
   // positions carry round-off eps L, which inertia turns into forces eps k L²; control points of
   // forces carry eps N, and slopes of splines are up to degree / h
   constexpr double kEps = std::numeric_limits<double>::epsilon();
   const double k = model_.k + fluid_.stiffness();
-  const double by_inertia = 50 * kEps * k * L * L,
+  const double of_disks = disks_ ? disks_->stiffness() / L : 0;
+  const double by_inertia = 50 * kEps * (k + of_disks) * L * L,
                by_slopes = 4 * kEps * N * options_.degree * std::sqrt(elements_);
   noise_ = std::max(1.0, std::max(by_inertia, by_slopes) / (scale_.force * forcing_.tolerance));
   Vec3 K_se = Vec3::Zero();
@@ -271,6 +277,7 @@ void CollocationRod::choose_units() {
     growth_ =
         std::max(growth_, cprsim::growth_exponent(sections_[j], models_[j].C_bt.cwiseInverse(),
                                                   K_se, L, models_[j].k, N));
+  if (disks_) growth_ = std::max(growth_, disks_->growth_exponent(EI, L, model_.k));
   const double layer = L / std::max(1.0, growth_);
   unit_ = {layer, EI / (layer * layer), EI / layer};
 }
@@ -349,6 +356,7 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
       ++row;
     }
   };
+  if (disks_) meet_disks();
   add(VecX(base_.value(base_state(), base, loose) - base_gap_));
   add(Eigen::Matrix<double, 1, 1>(control_.front().head<4>().squaredNorm() - 1));
   residual_.clear();

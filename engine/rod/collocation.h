@@ -35,6 +35,7 @@
 #include "engine/rod/end_wrench.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/nodal_contacts.h"
+#include "engine/rod/rod_disks.h"
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/tendon_border.h"
@@ -53,6 +54,7 @@ struct CollocationOptions {
   bool touches = false;                        ///< whether it may touch something
   std::vector<double> stations;                ///< s of point loads
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
+  std::vector<DiskSpec> disks;                 ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
@@ -187,7 +189,10 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   NodeState base_state() const;
   NodeState tip_state() const;
   Vec6 load_at(std::size_t station, const Mat3& R) const;
-  Mat6 load_by_turn(std::size_t station, const Mat3& R) const;
+  Mat6 load_by_motion(std::size_t station, const Mat3& R) const;
+  void place_disks();
+  void meet_disks();
+  const Vec13& end_of_piece(std::size_t station) const;
   void set_shape(const Pose& X_WBase, const std::function<Vec3(double)>& turn);
   void set_turned(const Pose& X_WBase, const std::function<Vec4(double)>& turned);
   Vec3 compliance_bt(const SectionProperties& section) const;
@@ -296,6 +301,7 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   TendonBorder border_;
   VecX tension_direction_;
   std::vector<Vec13> kept_residual_;
+  std::unique_ptr<RodDisks> disks_;  ///< null: none
 };
 
 }  // namespace cprsim

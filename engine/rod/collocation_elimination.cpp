@@ -11,10 +11,10 @@
 namespace cprsim {
 namespace {
 
-/// [I; load_by_turn] as it acts on (phi, dp, dn, dm).
-Mat12 passing(const Mat6& load_by_turn) {
+/// [I; load_by_motion] as it acts on (phi, dp, dn, dm).
+Mat12 passing(const Mat6& load_by_motion) {
   Mat12 P = Mat12::Identity();
-  P.bottomLeftCorner<6, 6>() += load_by_turn;
+  P.bottomLeftCorner<6, 6>() += load_by_motion;
   return P;
 }
 
@@ -49,7 +49,7 @@ void CollocationRod::assemble_base(const Port& base) {
   const int d = static_cast<int>(space_.freedoms());
   const NodeState start = base_state();
   const ConditionRows rows = base_.rows(start, base, scale_);
-  const MatX J = rows.by_state * passing(load_by_turn(0, Mat3(rotation_of(start)))) *
+  const MatX J = rows.by_state * passing(load_by_motion(0, Mat3(rotation_of(start)))) *
                  increment_units().tail<12>().asDiagonal() * space_.state;
   const MatX by_body = rows.by_body * space_.motion;
   const VecX value = rows.value - base_gap_;
@@ -70,8 +70,9 @@ void CollocationRod::assemble_join(std::size_t piece, int row) {
   const int at = pieces_[piece].first_control;
   const Vec4 q = control_[static_cast<std::size_t>(at - 1)].head<4>();
   Mat13 before = -Mat13::Identity();
-  before.bottomLeftCorner<6, 4>() +=
-      load_by_turn(piece, rotation_of(q)).leftCols<3>() * turn_by_quaternion(q);
+  const Mat6 load = load_by_motion(piece, rotation_of(q));
+  before.bottomLeftCorner<6, 4>() += load.leftCols<3>() * turn_by_quaternion(q);
+  before.block<6, 3>(kN, kP) += load.rightCols<3>();
   put(row, at - 1, before);
   put(row, at, Mat13::Identity());
 }
@@ -151,7 +152,7 @@ bool CollocationRod::linearize_given(const Port& base, const Port& tip, Condense
   last_.rightCols(given) = general.rightCols(given);
 
   const NodeState end = tip_state();
-  MatX Y = passing(-load_by_turn(pieces_.size(), Mat3(rotation_of(end)))) *
+  MatX Y = passing(-load_by_motion(pieces_.size(), Mat3(rotation_of(end)))) *
            increment_units().tail<12>().asDiagonal() * space_.state * last_;
   OpenPorts* const ports = forces > 0 ? &touch_->ports() : nullptr;
   if (ports) {
@@ -177,7 +178,7 @@ MatX CollocationRod::base_columns(const NodeState& start) const {
   const Eigen::Index given = d + 1 + force_columns();
   MatX w = MatX::Zero(given, d + given);
   w.rightCols(given).setIdentity();
-  MatX Y = passing(load_by_turn(0, Mat3(rotation_of(start)))) *
+  MatX Y = passing(load_by_motion(0, Mat3(rotation_of(start)))) *
            increment_units().tail<12>().asDiagonal() * space_.state *
            system_.substitute(last_, w).middleRows(1, 2 * d);
   if (force_columns() > 0) Y.bottomRightCorner(6, force_columns()) += contact_loads(0);

@@ -99,11 +99,13 @@ std::vector<Track*> CollocationRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
   if (touch_ && touch_->turns()) all.push_back(touch_->turns());
+  if (disks_ && disks_->turns()) all.push_back(disks_->turns());
   return all;
 }
 
 void CollocationRod::fill_tracks() {
   if (touch_) touch_->fill_turns();
+  if (disks_) disks_->fill_turns();
   const auto n = static_cast<Eigen::Index>(points_.size());
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const CollocationPoint& point = points_[j];
@@ -121,6 +123,7 @@ void CollocationRod::fill_tracks() {
 
 void CollocationRod::accept_tracks() {
   if (touch_) touch_->accept_contacts();
+  if (disks_) disks_->accept();
   if (!options_.rotary_inertia) return;
   for (std::size_t j = 0; j < points_.size(); ++j)
     reference_rotations_[j] = points_[j].R;
@@ -128,6 +131,7 @@ void CollocationRod::accept_tracks() {
 
 void CollocationRod::start_tracks() {
   accept_tracks();
+  if (disks_) disks_->start();
   for (CollocationPoint& point : points_) {
     std::fill_n(point.spin.theta, 3, 0.0);
     std::fill_n(point.spin.omega, 3, 0.0);
@@ -177,6 +181,13 @@ void CollocationRod::start_tracks_moving() {
     track_.v.segment<3>(3 * (n + static_cast<Eigen::Index>(k))) = value(nodes_[k]).segment<3>(kP);
   control_.swap(moving);
   track_.set_start(track_.x, VecX(track_.v));
+  if (disks_) {
+    for (std::size_t g = 1; g <= pieces_.size(); ++g) {
+      const auto end = static_cast<std::size_t>(&end_of_piece(g) - control_.data());
+      disks_->set_rate(g, direction_[end].segment<3>(1));
+    }
+    disks_->start_moving();
+  }
   if (options_.rotary_inertia)
     rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()), VecX(rotation_track_.v));
 }

@@ -73,6 +73,7 @@ void CollocationRod::visit(Archive& archive) {
     track->visit(archive);
   archive.doubles(reference_rotations_);
   if (tendons_) tendons_->visit(archive);
+  if (disks_) disks_->visit(archive);
 }
 
 RodSample CollocationRod::observe() const {
@@ -118,6 +119,7 @@ RodField CollocationRod::field() const {
       if (tendons_) describe_tendons(at, f);
     }
   }
+  if (disks_) disks_->describe(1, f);
   f.base = base_state();
   f.tip = tip_state();
   describe_section(f, section_, options_.shear, options_.extension);
@@ -156,6 +158,7 @@ RodEnergy CollocationRod::energy() const {
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
   if (touch_) e.damping_power += touch_->friction_power();
+  if (disks_) disks_->add_energy(track_, e);
   // per unit feed: the base section's traction works on the inflow, which brings strain energy and
   // weight along; the first point is the base
   const CollocationPoint& base = points_.front();

@@ -18,6 +18,14 @@ struct FieldPoint {
   Vec3 n, m;  ///< internal force, moment
 };
 
+/// A rigid disk where two cells meet, or at the tip.
+struct FieldDisk {
+  std::size_t cells = 0;  ///< before it
+  double mass = 0;        ///< kg
+  Vec3 J = Vec3::Zero();  ///< about section axes, kg m²; whether or not rotary inertia is listed
+  Mat3 R = Mat3::Identity();  ///< of the section
+};
+
 /// Points are those of a Runge-Kutta collocation: cell by cell, table->stages each.
 struct RodField {
   const ArcTableau* table = nullptr;
@@ -33,6 +41,7 @@ struct RodField {
   Vec3 rhoJ = Vec3::Zero();  ///< whether or not the scene lists rotary inertia
 
   std::vector<SectionProperties> sections;  ///< of the points, where they vary
+  std::vector<FieldDisk> disks;
 
   /// At the next point.
   void add_tendons(const Mat6& stiffness, const MatX& held) {

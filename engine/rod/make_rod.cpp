@@ -25,6 +25,7 @@ ShootingOptions shooting_options(const RodPlan& plan) {
   o.line_loads = plan.line_loads;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
+  o.disks = plan.spec->disks;
   o.along = plan.along;
   return o;
 }
@@ -80,6 +81,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.touches = plan.touches;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
+  o.disks = plan.spec->disks;
   o.along = plan.along;
   if (!plan.plane)
     return std::make_unique<StrainRod>(spec.name, EndCondition(spec.base), EndCondition(spec.tip),
@@ -104,6 +106,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.touches = plan.touches;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
+  o.disks = plan.spec->disks;
   o.along = plan.along;
   if (!plan.plane)
     return std::make_unique<CollocationRod>(spec.name, EndCondition(spec.base),

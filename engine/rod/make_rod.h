@@ -29,7 +29,7 @@ struct RodPlan {
   bool rotary_inertia = false, damping = false, drag = false;
   bool line_loads = false;       ///< whether there are loads spread along it
   bool touches = false;          ///< whether it may touch something
-  std::vector<double> stations;  ///< s / L of point loads, then of breaks of tendons and lines
+  std::vector<double> stations;  ///< s / L of point loads, then of breaks: tendons, lines, disks
   std::vector<Tendon> tendons;
   const SolverSpec* solver = nullptr;  ///< resolution, accuracy
 };

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "engine/rod/arc_grid.h"
 
@@ -67,10 +68,32 @@ PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Ma
   const auto stages = static_cast<Eigen::Index>(n);
   angles_ = 2 * static_cast<Eigen::Index>(n + grid_.size());
   strains_ = angles_ + (options.rotary_inertia ? stages : 0);
-  track_.resize(strains_ + (options.damping ? stages * (extensible_ ? 3 : 1) : 0));
+  disk_angles_ = strains_ + (options.damping ? stages * (extensible_ ? 3 : 1) : 0);
+  place_disks();
+  track_.resize(disk_angles_ +
+                (options.rotary_inertia ? static_cast<Eigen::Index>(disks_.size()) : 0));
   forcing_.length = length;
   const Vec3 tangent = plane_.transpose() * X_WBase.R.col(2);
   set_straight(std::atan2(tangent.y(), tangent.x()), plane_.leftCols<2>().transpose() * X_WBase.p);
+}
+
+void PlanarRod::place_disks() {
+  for (const DiskSpec& spec : options_.disks) {
+    Disk disk;
+    disk.node = nodes_at(grid_, {spec.s})[0];
+    disk.mass = spec.mass;
+    if (options_.rotary_inertia) disk.inertia = about_normal(disk_inertia(spec));
+    disks_.push_back(disk);
+  }
+}
+
+void PlanarRod::pass_disks(std::size_t node, PlanarNode& state) const {
+  for (const Disk& disk : disks_) {
+    if (disk.node != node) continue;
+    for (int i = 0; i < 2; ++i)
+      state.n[i] += disk.k * state.p[i] + disk.force[i];
+    state.m += disk.k_J * state.theta + disk.moment;
+  }
 }
 
 double PlanarRod::about_normal(const Vec3& diagonal) const {
@@ -127,7 +150,10 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   scale_ = {L, K_b_ / (L * L), K_b_ / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  noise_ = std::max(1.0, kRoundOff * model_.k * std::pow(L, 4) / (K_b_ * forcing_.tolerance));
+  double k = model_.k;
+  for (const Disk& disk : disks_)
+    k += disk.mass * rates.c_v * rates.c_w / L;
+  noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (K_b_ * forcing_.tolerance));
   update_stage_inputs();
   choose_segments();
 }
@@ -162,6 +188,19 @@ void PlanarRod::update_stage_inputs() {
     stage.b[0] = b.x();
     stage.b[1] = b.y();
   }
+  for (std::size_t d = 0; d < disks_.size(); ++d) {
+    Disk& disk = disks_[d];
+    disk.k = disk.mass * rates_.c_v * rates_.c_w;
+    disk.k_J = disk.inertia * rates_.c_v * rates_.c_w;
+    disk.force = -disk.mass * plane_.leftCols<2>().transpose() * forcing_.gravity;
+    disk.moment = 0;
+    if (!dynamic) continue;
+    const Eigen::Index i = 2 * (n + static_cast<Eigen::Index>(disk.node)),
+                       angle = disk_angles_ + static_cast<Eigen::Index>(d);
+    disk.force += disk.mass * (rates_.c_w * track_.x_h.segment<2>(i) + track_.v_h.segment<2>(i));
+    if (options_.rotary_inertia)
+      disk.moment = disk.inertia * (rates_.c_w * track_.x_h[angle] + track_.v_h[angle]);
+  }
 }
 
 // Segments from the growth exponent; cells are shared out evenly. Starts move to the nodes last
@@ -176,6 +215,13 @@ void PlanarRod::choose_segments() {
     for (const PlanarNode& node : nodes_)
       N = std::max(N, std::hypot(node.n[0], node.n[1]));
   growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k, N);
+  if (!disks_.empty()) {
+    double k = model_.k;
+    for (const Disk& disk : disks_)
+      k += disk.k / forcing_.length;
+    growth_ =
+        std::max(growth_, forcing_.length * std::pow(k * model_.C_b, 0.25) / std::numbers::sqrt2);
+  }
   const double layer = forcing_.length / std::max(1.0, growth_);
   port_scale_ = {layer, K_b_ / (layer * layer), K_b_ / layer};
   const int wanted = wanted_segments(growth_, cells_, segments());
@@ -205,6 +251,7 @@ void PlanarRod::apply_load(std::size_t node, PlanarNode& state) const {
     state.n[1] -= F.y();
     state.m -= T.z();
   }
+  pass_disks(node, state);
 }
 
 PlanarRod::Place PlanarRod::place(const Port& port) const {

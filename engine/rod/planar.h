@@ -98,6 +98,9 @@ class PlanarRod final : public RodModel {
   void close_tip(const Place& tip, const double* Y, CondensedRod& out) const;
   void close_base(const Place& base, CondensedRod& out) const;
 
+  void place_disks();
+  void pass_disks(std::size_t node, PlanarNode& state) const;
+
   int affine_column() const { return columns_ == kPlanarNarrow ? 3 : 6; }
 
   /// Of the section's axes: stiffness, damping or inertia that motion in the plane meets.
@@ -163,6 +166,18 @@ class PlanarRod final : public RodModel {
   /// (damping). Angles of one axis are integrated like positions.
   Track track_;
   Eigen::Index angles_ = 0, strains_ = 0;  ///< where those begin
+
+  /// A disk of engine/rod/rod_disks.h: n+ = n- + k p + force, m+ = m- + k_J theta + moment.
+  struct Disk {
+    std::size_t node = 0;
+    double mass = 0, inertia = 0;
+    double k = 0, k_J = 0;
+    Vec2 force = Vec2::Zero();
+    double moment = 0;
+  };
+
+  std::vector<Disk> disks_;
+  Eigen::Index disk_angles_ = 0;  ///< where theirs begin, with rotary inertia
   long section_evaluations_ = 0;
 };
 

@@ -201,7 +201,8 @@ const PlanarKernel& CPRSIM_PLANAR_KERNEL(int stages, CellLaw law) {
     case CellLaw::kExtensibleGeneral:
     case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
     case CellLaw::kExtensibleFluid:
-    case CellLaw::kTendons:  // not in a plane
+    case CellLaw::kTendons:
+    case CellLaw::kTendonsFluid:  // not in a plane
       break;
   }
   return kKernels<CellLaw::kExtensible>[stages - 1];

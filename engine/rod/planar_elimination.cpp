@@ -114,6 +114,14 @@ void PlanarRod::apply_load_columns(std::size_t node, const PlanarNode& state, do
       Y[4 * columns_ + c] -= F1 * Y[c];
     }
   }
+  for (const Disk& disk : disks_) {
+    if (disk.node != node) continue;
+    for (int c = 0; c < columns_; ++c) {
+      Y[3 * columns_ + c] += disk.k * Y[columns_ + c];
+      Y[4 * columns_ + c] += disk.k * Y[2 * columns_ + c];
+      Y[5 * columns_ + c] += disk.k_J * Y[c];
+    }
+  }
 }
 
 // At a segment's end: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are

@@ -127,7 +127,8 @@ PlanarEvaluate planar_evaluate(int stages, CellLaw law) {
     case CellLaw::kExtensibleGeneral:
     case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
     case CellLaw::kExtensibleFluid:
-    case CellLaw::kTendons:  // not in a plane
+    case CellLaw::kTendons:
+    case CellLaw::kTendonsFluid:  // not in a plane
       break;
   }
   return kEvaluations<CellLaw::kExtensible>[stages - 1];

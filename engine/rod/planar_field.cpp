@@ -25,6 +25,11 @@ RodField PlanarRod::field() const {
     Eigen::Map<Vec3>(state.m) = node.m * plane_.col(2);
     return state;
   };
+  for (std::size_t d = 0; d < disks_.size(); ++d) {
+    const PlanarNode& node = nodes_[disks_[d].node];
+    f.disks.push_back({disks_[d].node, disks_[d].mass, disk_inertia(options_.disks[d]),
+                       rotation(node.c, node.s)});
+  }
   f.base = end_state(starts_.front());
   f.tip = end_state(nodes_.back());
   describe_section(f, section_, options_.shear, options_.extension);

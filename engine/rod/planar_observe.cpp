@@ -66,9 +66,12 @@ void PlanarRod::fill_tracks() {
     x = std::copy_n(stage.p, 2, x);
   for (const PlanarNode& node : nodes_)
     x = std::copy_n(node.p, 2, x);
-  if (options_.rotary_inertia)
+  if (options_.rotary_inertia) {
     for (const PlanarStage& stage : stages_)
       *x++ = stage.theta;
+    for (std::size_t d = 0; d < disks_.size(); ++d)
+      track_.x[disk_angles_ + static_cast<Eigen::Index>(d)] = nodes_[disks_[d].node].theta;
+  }
   if (!options_.damping) return;
   for (const PlanarStage& stage : stages_)
     *x++ = stage.kappa;
@@ -138,6 +141,8 @@ void PlanarRod::start_tracks_moving() {
       dtheta += h * table_->b[j] * d[j];
     }
     turn_followers(c + 1);
+    for (std::size_t i = 0; options_.rotary_inertia && i < disks_.size(); ++i)
+      if (disks_[i].node == c + 1) v[disk_angles_ + static_cast<Eigen::Index>(i)] = dtheta;
     v.segment<2>(2 * (n + static_cast<Eigen::Index>(c) + 1)) = dp;
   }
   track_.set_start(VecX(track_.x), v);
@@ -275,6 +280,16 @@ RodEnergy PlanarRod::energy() const {
     e.damping_power += w * B_b_ * kappa_t * kappa_t;
     if (extensible_)
       e.damping_power += w * B_v_.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
+  }
+  for (std::size_t d = 0; d < disks_.size(); ++d) {
+    const Disk& disk = disks_[d];
+    const PlanarNode& node = nodes_[disk.node];
+    const Eigen::Index i = 2 * (n + static_cast<Eigen::Index>(disk.node));
+    e.kinetic += 0.5 * disk.mass * track_.v.segment<2>(i).squaredNorm();
+    e.gravity -= disk.mass * forcing_.gravity.dot(plane_ * Vec3(node.p[0], node.p[1], height_));
+    if (options_.rotary_inertia)
+      e.kinetic +=
+          0.5 * disk.inertia * std::pow(track_.v[disk_angles_ + static_cast<Eigen::Index>(d)], 2);
   }
   // energy that enters per unit feed, see ShootingRod::energy
   const PlanarNode& base = nodes_.front();

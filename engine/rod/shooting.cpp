@@ -61,6 +61,8 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
   }
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
+  if (!options_.disks.empty())
+    disks_ = std::make_unique<RodDisks>(options_.disks, grid_, n, options_.rotary_inertia);
   set_unloaded(Pose{});
 }
 
@@ -159,7 +161,7 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   if (model_.rotary || !varying_.empty()) law_ = generalized(law_);
   if (fluid_.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
   if (tendons_) {
-    law_ = CellLaw::kTendons;
+    law_ = fluid_.acts() ? CellLaw::kTendonsFluid : CellLaw::kTendons;
     tendons_->set(forcing.tendons);
   }
   kernel_ = &cell_kernel(table_->stages, law_);
@@ -168,7 +170,11 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   scale_ = {L, EI / (L * L), EI / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  const double k = model_.k + fluid_.stiffness();
+  double k = model_.k + fluid_.stiffness();
+  if (disks_) {
+    disks_->prepare(rates, forcing_, track_);
+    k += disks_->stiffness() / L;
+  }
   noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (EI * forcing_.tolerance));
   update_stage_inputs();
   choose_segments();
@@ -228,6 +234,9 @@ void ShootingRod::choose_segments() {
   growth_ = growth(section_, model_);
   for (std::size_t j = 0; j < sections_.size(); ++j)
     growth_ = std::max(growth_, growth(sections_[j], varying_[j]));
+  if (disks_)
+    growth_ = std::max(growth_, disks_->growth_exponent(section_.K_bt.head<2>().minCoeff(),
+                                                        forcing_.length, model_.k));
   const double layer = forcing_.length / std::max(1.0, growth_);
   const double EI = scale_.moment * scale_.length;
   port_scale_ = {layer, EI / (layer * layer), EI / layer};
@@ -249,6 +258,7 @@ void ShootingRod::apply_load(std::size_t node, NodeState& state) const {
     Eigen::Map<Vec3>(state.n) -= R * load.force;
     Eigen::Map<Vec3>(state.m) -= R * load.torque;
   }
+  if (disks_) disks_->pass(node, state);
 }
 
 RodResidual& ShootingRod::add_row(RodResidual& r, double value, int row) const {

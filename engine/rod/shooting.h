@@ -25,6 +25,7 @@
 
 #include "engine/rod/contact.h"
 #include "engine/rod/immersion.h"
+#include "engine/rod/rod_disks.h"
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/tendon_border.h"
@@ -41,6 +42,7 @@ struct ShootingOptions {
   bool line_loads = false;                     ///< whether there are loads spread along it
   std::vector<double> stations;                ///< s of point loads: grid nodes are placed there
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
+  std::vector<DiskSpec> disks;                 ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
@@ -335,6 +337,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   std::unique_ptr<RodTendons> tendons_;  ///< sections: stages
   TendonBorder border_;
   VecX tension_direction_;
+  std::unique_ptr<RodDisks> disks_;     ///< null: none
   std::vector<CellStage> kept_stages_;  ///< while residuals are those of add_tension()
 
   bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }

@@ -79,6 +79,7 @@ void ShootingRod::apply_load_columns(std::size_t node, const NodeState& state, d
     Y.middleRows<3>(6) += hat(R * load.force) * Y.topRows<3>();
     Y.middleRows<3>(9) += hat(R * load.torque) * Y.topRows<3>();
   }
+  if (disks_) disks_->pass_columns(node, ColumnsMap(Y0, 12, columns_));
 }
 
 // At a boundary: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are z' = R z

@@ -22,6 +22,7 @@ RodField ShootingRod::field() const {
   f.base = starts_.front();
   f.tip = nodes_.back();
   f.sections = sections_;
+  if (disks_) disks_->describe(1, f);
   describe_section(f, section_, options_.shear, options_.extension);
   return f;
 }

@@ -75,11 +75,13 @@ std::vector<Track*> ShootingRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
   if (touch_ && touch_->friction) all.push_back(&touch_->turns);
+  if (disks_ && disks_->turns()) all.push_back(disks_->turns());
   return all;
 }
 
 void ShootingRod::fill_tracks() {
   fill_contact_tracks();
+  if (disks_) disks_->fill_turns();
   Eigen::Index i = 0;
   auto put = [&](const double* value) {
     track_.x.segment<3>(i) = vec(value);
@@ -107,6 +109,7 @@ void ShootingRod::fill_tracks() {
 
 void ShootingRod::accept_tracks() {
   accept_contacts();
+  if (disks_) disks_->accept();
   if (!options_.rotary_inertia) return;
   for (std::size_t j = 0; j < stages_.size(); ++j)
     std::copy_n(stages_[j].R, 9, &reference_rotations_[9 * j]);
@@ -114,6 +117,7 @@ void ShootingRod::accept_tracks() {
 
 void ShootingRod::start_tracks() {
   accept_tracks();
+  if (disks_) disks_->start();
   for (CellStage& stage : stages_) {
     std::fill_n(stage.theta, 3, 0.0);
     std::fill_n(stage.omega, 3, 0.0);
@@ -182,9 +186,11 @@ void ShootingRod::start_tracks_moving() {
       dp += h * table_->b[j] * dtau[j];
     phi += Mat3(rotation_of(nodes_[c + 1])) * (right_jacobian(Omega_end) * dOmega_end);
     turn_followers(c + 1);
+    if (disks_) disks_->set_rate(c + 1, phi);
     track_.v.segment<3>(3 * (n + static_cast<Eigen::Index>(c) + 1)) = dp;
   }
   track_.set_start(track_.x, VecX(track_.v));
+  if (disks_) disks_->start_moving();
   if (options_.rotary_inertia)
     rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()), VecX(rotation_track_.v));
 }
@@ -270,6 +276,7 @@ void ShootingRod::visit(Archive& archive) {
     track->visit(archive);
   archive.doubles(reference_rotations_);
   if (tendons_) tendons_->visit(archive);
+  if (disks_) disks_->visit(archive);
 }
 
 RodSample ShootingRod::observe() const {
@@ -343,6 +350,7 @@ RodEnergy ShootingRod::energy() const {
     const Vec3 v_t = track_.v.segment<3>(strains + 3 * n + i);
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
+  if (disks_) disks_->add_energy(track_, e);
   if (touch_ && touch_->friction && rates_.dynamic())
     for (std::size_t i = 0; i < std::min(touch_->rows.size(), touch_->contacts.size()); ++i)
       e.damping_power += contact_loss(touch_->contacts[i], touch_->rows[i]);

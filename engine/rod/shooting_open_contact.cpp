@@ -111,6 +111,7 @@ bool ShootingRod::sweep_open_columns(std::size_t cell) {
       return false;
     // the affine part is in the other columns already
     block.rightCols<kWide - Open::kUsed>().setZero();
+    apply_load_columns(cell + 1, nodes_[cell + 1], block.data());
   }
   return true;
 }

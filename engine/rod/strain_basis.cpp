@@ -69,6 +69,8 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
   if (options_.touches) touch_.reset(new NodalContacts(*this));
+  if (!options_.disks.empty())
+    disks_ = std::make_unique<RodDisks>(options_.disks, grid_, points, options_.rotary_inertia);
   set_unloaded(X_WBase);
 }
 
@@ -120,7 +122,11 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   scale_ = {L, EI / (L * L), EI / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  const double k = k_most + fluid_.stiffness();
+  double k = k_most + fluid_.stiffness();
+  if (disks_) {
+    disks_->prepare(rates, forcing_, track_);
+    k += disks_->stiffness() / L;
+  }
   noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (EI * forcing.tolerance));
   free_modes_.clear();
   for (std::size_t a = 0; a < modes_.size(); ++a) {
@@ -134,7 +140,9 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   double N = 0;
   for (const StrainPoint& point : points_)
     N = std::max(N, point.n.norm());
-  growth_ = cprsim::growth_exponent(section_, section_.K_bt, Vec3::Zero(), L, k, N);
+  growth_ = cprsim::growth_exponent(section_, section_.K_bt, Vec3::Zero(), L,
+                                    k_most + fluid_.stiffness(), N);
+  if (disks_) growth_ = std::max(growth_, disks_->growth_exponent(EI, L, k_most));
 }
 
 // (4) with xi_t = c_v q + q_h, divided by K + c_v B: q + C B q_h - C ∫ Phi^T Lambda = 0.
@@ -176,6 +184,7 @@ void StrainRod::apply_load(std::size_t node, NodeState& state) const {
     Eigen::Map<Vec3>(state.n) -= R * load.force;
     Eigen::Map<Vec3>(state.m) -= R * load.torque;
   }
+  if (disks_) disks_->pass(node, state);
   if (!touch_) return;
   const Vec6 load = touch_->load_at(node, rotation_of(state));
   Eigen::Map<Vec3>(state.n) -= load.head<3>();

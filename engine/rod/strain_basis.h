@@ -33,6 +33,7 @@
 #include "engine/rod/end_condition.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/nodal_contacts.h"
+#include "engine/rod/rod_disks.h"
 #include "engine/rod/rod_model.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/strain_rule.h"
@@ -51,6 +52,7 @@ struct StrainOptions {
   bool touches = false;                        ///< whether it may touch something: at its borders
   std::vector<double> stations;                ///< s / L of point loads
   std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
+  std::vector<DiskSpec> disks;                 ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
@@ -296,6 +298,7 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
   std::unique_ptr<RodTendons> tendons_;  ///< sections: points
   TendonBorder border_;
   VecX tension_direction_, kept_residual_;
+  std::unique_ptr<RodDisks> disks_;  ///< null: none
 
   /// What a sweep writes along one element, kept so that it need not ask for memory.
   struct Scratch {
@@ -309,7 +312,7 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
   MatX tip_columns_, law_columns_;
   std::vector<Rows3> point_turns_, point_moves_, node_moves_;
   MatX general_;                   ///< x = general_ [z; zeta_A; 1; F], F the forces of contacts
-  std::vector<Rows3> node_turns_;  ///< of a rod that touches
+  std::vector<Rows3> node_turns_;  ///< of a rod that touches or carries disks
 
   // direction and remembered unknowns
   VecX direction_;

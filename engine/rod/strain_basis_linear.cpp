@@ -55,13 +55,14 @@ void StrainRod::vary_load(std::size_t node, Rows12& y) const {
     y.middleRows<3>(6) += hat(R * load.force) * y.topRows<3>();
     y.middleRows<3>(9) += hat(R * load.torque) * y.topRows<3>();
   }
+  if (disks_) disks_->pass_columns(node, y);
 }
 
 // (1) of engine/rod/nodal_contacts.h; nodes are where the forces act.
 void StrainRod::vary_contacts(std::size_t node, Rows12& y) {
   node_moves_[node] = y.middleRows<3>(3);
+  if (!node_turns_.empty()) node_turns_[node] = y.topRows<3>();
   if (!touch_) return;
-  node_turns_[node] = y.topRows<3>();
   const Mat3 R = rotation_of(nodes_[node]);
   y.middleRows<3>(9) -= touch_->moment_by_turn(node, R) * y.topRows<3>();
   y.bottomRightCorner(6, force_columns()) -= touch_->load_by_forces(node, R);
@@ -193,7 +194,7 @@ void StrainRod::sweep_columns() {
   point_turns_.resize(points_.size());
   point_moves_.resize(points_.size());
   node_moves_.resize(nodes_.size());
-  node_turns_.resize(touch_ ? nodes_.size() : 0);
+  node_turns_.resize(touch_ || disks_ ? nodes_.size() : 0);
   law_columns_.setZero(n, states + n + force_columns());
   Rows12 y = Rows12::Zero(12, states + n + force_columns());
   y.leftCols(states) = space_.state * state_units().asDiagonal();

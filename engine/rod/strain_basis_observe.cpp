@@ -68,6 +68,7 @@ std::vector<Track*> StrainRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
   if (touch_ && touch_->turns()) all.push_back(touch_->turns());
+  if (disks_ && disks_->turns()) all.push_back(disks_->turns());
   return all;
 }
 
@@ -84,12 +85,14 @@ void StrainRod::fill_tracks() {
     std::copy_n(rotary_[j].theta, 3, rotation_track_.x.data() + 3 * j);
     std::copy_n(rotary_[j].omega, 3, rotation_track_.v.data() + 3 * j);
   }
+  if (disks_) disks_->fill_turns();
 }
 
 void StrainRod::accept_tracks() {
   if (touch_) touch_->accept_contacts();
   for (std::size_t j = 0; j < rotary_.size(); ++j)
     Eigen::Map<RowMatrix>(rotary_[j].R_start) = points_[j].R;
+  if (disks_) disks_->accept();
 }
 
 void StrainRod::start_tracks() {
@@ -98,6 +101,7 @@ void StrainRod::start_tracks() {
     std::fill_n(rotary.theta, 3, 0.0);
     std::fill_n(rotary.omega, 3, 0.0);
   }
+  if (disks_) disks_->start();
   fill_tracks();
   track_.set_start(VecX(track_.x), VecX::Zero(track_.x.size()));
   const Eigen::Index turns = rotation_track_.x.size();
@@ -127,6 +131,11 @@ void StrainRod::start_tracks_moving() {
     at += q_t.size();
   }
   track_.set_start(VecX(track_.x), v);
+  if (disks_) {
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+      disks_->set_rate(k, node_turns_[k] * moving);
+    disks_->start_moving();
+  }
   for (std::size_t j = 0; j < rotary_.size(); ++j) {
     const Vec3 omega = points_[j].R.transpose() * (point_turns_[j] * moving);
     std::copy_n(omega.data(), 3, rotary_[j].omega);
@@ -210,6 +219,7 @@ void StrainRod::visit(Archive& archive) {
   for (Track* track : tracks())
     track->visit(archive);
   if (tendons_) tendons_->visit(archive);
+  if (disks_) disks_->visit(archive);
 }
 
 RodSample StrainRod::observe() const {
@@ -286,6 +296,7 @@ RodField StrainRod::field() const {
         f.add_tendons(stiffness, held);
       }
     }
+  if (disks_) disks_->describe(static_cast<std::size_t>(pieces), f);
   f.base = start_;
   f.tip = nodes_.back();
   describe_section(f, section_, options_.shear, options_.extension);
@@ -342,6 +353,7 @@ RodEnergy StrainRod::energy() const {
     const Vec3 omega = vec(rotary_[j].omega);
     energy.kinetic += weight * 0.5 * omega.dot(section(j).rhoJ.cwiseProduct(omega));
   }
+  if (disks_) disks_->add_energy(track_, energy);
   if (sections_.empty())
     add_strain_energy(energy);
   else

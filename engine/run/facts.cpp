@@ -40,6 +40,8 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
     for (int k = 0; k < kPieces; ++k)
       f.mass += along.at((k + 0.5) / kPieces, (k + 0.5) / kPieces).rhoA * L / kPieces;
   }
+  for (const DiskSpec& disk : rod.spec->disks)
+    f.mass += disk.mass;
   f.bending_x = s.K_bt.x();
   f.bending_y = s.K_bt.y();
   f.torsion = s.K_bt.z();

@@ -64,6 +64,7 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
   RodField field = rod.model->field();
   if (metric) {  // by the material's length
     field.added_mass = 0;
+    field.disks.clear();
     for (SectionProperties& section : field.sections) {
       section.rhoA = field.rhoA;
       section.rhoJ = field.rhoJ;

@@ -151,6 +151,15 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
       node.d.leftCols(active) += h * table.b[k] * d_s[k];
       node.phi.middleCols<3>(layout.at(c * S + k)).diagonal().array() += h * table.b[k];
     }
+    for (const FieldDisk& disk : field.disks) {
+      if (disk.cells != c + 1) continue;
+      const Rows3 d = node.d.leftCols(active);
+      out.M.topLeftCorner(active, active).noalias() += disk.mass * (d.transpose() * d);
+      if (!rotary) continue;
+      const Rows3 spin = disk.R.transpose() * node.phi.leftCols(active);
+      out.M.topLeftCorner(active, active).noalias() +=
+          spin.transpose() * disk.J.asDiagonal() * spin;
+    }
     const Eigen::Index row = 6 * static_cast<Eigen::Index>(c + 1);
     out.nodes.middleRows<3>(row) = node.phi;
     out.nodes.middleRows<3>(row + 3) = node.d;

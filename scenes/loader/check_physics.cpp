@@ -265,6 +265,11 @@ void check_drives(Reading& r) {
             .at(Severity::kError, "E520", drive.place, 13,
                 "rod '" + rod.name + "' cannot be fed: its sections or its rest shape vary")
             .suggestion = "available: rods that are the same all along";
+      if (!rod.disks.empty())
+        r.report
+            .at(Severity::kError, "E520", drive.place, 13,
+                "rod '" + rod.name + "' cannot be fed: it carries disks")
+            .suggestion = "available: rods that are the same all along";
       for (const LoadSpec& load : scene.loads)
         if (load.to && load.rod == drive.rod)
           r.report.at(Severity::kError, "E520", load.place, 11,

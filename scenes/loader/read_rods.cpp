@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "scenes/loader/disks.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/rest_table.h"
 #include "scenes/loader/suggest.h"
@@ -371,6 +372,7 @@ void read_rods(Reading& r, const Node&) {
                                   value("shear"), damping->place};
       }
       read_drag(r, chain, rod);
+      if (const Node* disks = part(chain, "disks")) read_disks(r, *disks->parent, rod);
       rod.gravity = flag_of(part(chain, "gravity"), true);
       read_without(r, chain, rod);
       if (const Node* visual = part(chain, "visual"))

@@ -131,16 +131,6 @@ void check_tendons(Reading& r) {
   for (std::size_t k = 0; k < r.scene.tendons.size(); ++k) {
     const TendonSpec& tendon = r.scene.tendons[k];
     bool driven = false;
-    if (tendon.rod >= 0 && r.scene.effects.has(Effect::kDrag) &&
-        !r.scene.rods[at(tendon.rod)].lacks("drag"))
-      r.report
-          .at(Severity::kError, "E520", tendon.place, 14,
-              "a tendon along a rod with drag is not available in this version")
-          .suggestion = "give the rod <without>drag</without>";
-    for (const LoadSpec& load : r.scene.loads)
-      if (load.to && load.rod == tendon.rod)
-        r.report.at(Severity::kError, "E520", load.place, 11,
-                    "a load along a rod with a tendon is not available in this version");
     for (const DriveSpec& drive : r.scene.drives) {
       driven = driven || drive.tendon == static_cast<int>(k);
       if (drive.tendon == static_cast<int>(k)) check_displaced(r, tendon, drive);

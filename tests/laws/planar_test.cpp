@@ -152,6 +152,19 @@ TEST_P(PlanarIsSpatial, ForAReleasedRodWithEveryEffect) {
   }
 }
 
+TEST_P(PlanarIsSpatial, ForRodsWithDisks) {
+  Scene scene = rfrfr(GetParam());
+  switch_on(scene, {Effect::kGravity, Effect::kDamping, Effect::kRotaryInertia});
+  for (RodSpec& rod : scene.rods) {
+    damp(rod, 3e-3);
+    rod.disks = {{0.4, 0.01, 0.03}, {1, 0.02, 0.02}};
+  }
+  scene.bodies[2].velocity_given = true;
+  scene.bodies[2].linear_velocity = GetParam() * Vec3(0.1, 0.02, 0);
+  set_dynamic(scene, 0.1, 0.005, SchemeKind::kEsdirk32);
+  expect_agreement(scene, GetParam(), 1e-9);
+}
+
 TEST_P(PlanarIsSpatial, ForABodyThatStartsMoving) {
   Scene scene = rfrfr(GetParam());
   switch_on(scene, {Effect::kGravity, Effect::kDamping, Effect::kRotaryInertia});

@@ -99,6 +99,27 @@ TEST(Fluid, IsReadValueByValueFromRodsAndClasses) {
   EXPECT_EQ(drag.added_mass, 1);
 }
 
+TEST(Disks, StandEvenlyOrWhereTheySay) {
+  const auto scene = scene_of(R"(
+    <cprsim:rod_class name="heavy" class="steel">
+      <disks count="4"><radius>0.02</radius><mass>0.01</mass></disks>
+      <disks s="0.6"><mass>0.03</mass></disks></cprsim:rod_class>
+    <cprsim:rod name="a" class="heavy"><base attached_to="base" joint="fixed"/><length>0.2</length>
+    </cprsim:rod>
+    <cprsim:rod name="b" class="heavy"><base attached_to="base" joint="fixed"/><length>0.2</length>
+      <disks s="1"><mass>0.5</mass></disks></cprsim:rod>)");
+  const std::vector<DiskSpec>& disks = scene->rods.at(1).disks;
+  ASSERT_EQ(disks.size(), 5u);
+  const double s[] = {0.25, 0.5, 0.6, 0.75, 1};
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_EQ(disks[k].s, s[k]);
+    EXPECT_EQ(disks[k].mass, k == 2 ? 0.03 : 0.01);
+    EXPECT_EQ(disks[k].radius, k == 2 ? 0 : 0.02);
+  }
+  ASSERT_EQ(scene->rods.at(2).disks.size(), 1u);
+  EXPECT_EQ(scene->rods.at(2).disks[0].mass, 0.5);
+}
+
 TEST(RestShapes, AreACurvatureOrAHelixAndInherited) {
   const auto scene = scene_of(R"(
     <cprsim:rod_class name="bent" class="steel"><rest><curvature>1 -2 0.5</curvature></rest></cprsim:rod_class>
@@ -199,9 +220,9 @@ TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
   LoadOptions lax;
   lax.lax = true;
   EXPECT_TRUE(load_text(text, lax).scene);
-  EXPECT_EQ(error_codes(load_text(scene_text("<cprsim:rod name='other' class='steel'><base "
-                                             "attached_to='base' joint='fixed'/><length>0.2"
-                                             "</length><disks/></cprsim:rod>"),
+  EXPECT_EQ(error_codes(load_text(scene_text("<cprsim:tendon name='t' rod='leg'><parallel "
+                                             "radius='0.01' angle='0'/><friction mu='0.1'/>"
+                                             "</cprsim:tendon>"),
                                   lax)),
             std::vector<std::string>{"E520"});
 }

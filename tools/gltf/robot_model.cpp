@@ -15,6 +15,7 @@ namespace {
 constexpr int kSides = 16;  ///< of a rod's outline
 constexpr int kTendonSides = 6;
 constexpr double kTendonRadius = 0.15;                 ///< of the rod's
+constexpr double kDiskThickness = 0.12;                ///< of its radius
 constexpr double kFewestCells = 32, kMostCells = 250;  ///< between the joints of a rod
 constexpr double kTurn = 0.12;  ///< rad a cell, of a rod that is wound up at the start
 
@@ -133,6 +134,22 @@ void RobotModel::add_rod(const Scene& scene, std::size_t index, const RodSample&
            make_tube_mesh(section_outline(spec.section, radius, kSides), poses,
                           std::vector<Vec2>(poses.size(), Vec2::Zero())),
            look_of_rod(spec, index));
+  for (std::size_t k = 0; k < spec.disks.size(); ++k) {
+    const DiskSpec& disk = spec.disks[k];
+    if (disk.radius <= 0) continue;
+    const std::string name = spec.name + " disk " + std::to_string(k + 1);
+    Part flat;
+    ShapeSpec shape;
+    shape.kind = ShapeKind::kCylinder;
+    shape.size = Vec3(disk.radius, kDiskThickness * disk.radius, 0);
+    flat.look = look_of_rod(spec, index);
+    flat.look.diffuse = Vec3(0.62, 0.64, 0.67);
+    flat.mesh = make_shape(shape, flat.look, scene.meshes);
+    flat.closed = true;
+    const int node =
+        glb_.add_node({name, world_, pose_at(rod, disk.s), add_part(glb_, name, flat)});
+    follow(node, {-1, static_cast<int>(index), disk.s, Vec4::Zero()});
+  }
   for (const TendonSpec& tendon : scene.tendons) {
     if (tendon.rod != static_cast<int>(index)) continue;
     std::vector<Pose> along;

@@ -1,69 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole linearisation at once: along the Newton direction d at a state x where no row vanishes,
-//   d merit(x + alpha d) / d alpha = -2 merit at alpha = 0
-// holds if and only if sum r_i (J d + r)_i = 0, which an error in any derivative breaks.
-#include <gtest/gtest.h>
+// Newton directions of robots of every kind, against differences.
+#include "tests/engine/robot/newton_direction.h"
 
-#include "tests/engine/robot/direction_error.h"
-#include "tests/engine/robot/sample_scenes.h"
-#include "tests/support/methods.h"
-
-namespace cprsim {
+namespace cprsim::newton_direction {
 namespace {
-
-enum class Mode { kStatic, kBackwardEuler, kGeneralizedAlpha };
-
-struct Setting {
-  Mode mode = Mode::kStatic;
-  double h = 1. / 300;
-  double relaxation = 0, softness = 0, fraction = 1;
-  bool bodies_held = false;
-};
-
-StageRates rates_of(const Setting& setting, Robot& robot, Equations& equations, Numbers& numbers) {
-  if (setting.mode == Mode::kStatic) return StageRates{};
-  const bool euler = setting.mode == Mode::kBackwardEuler;
-  return start_step(robot, equations,
-                    euler ? SchemeKind::kBackwardEuler : SchemeKind::kGeneralizedAlpha, setting.h,
-                    numbers);
-}
-
-/// |slope of merit / (-2 merit) - 1| at a generic state; 1 if there is no direction.
-double slope_error(const Scene& scene, const Setting& setting, unsigned seed) {
-  Numbers numbers(seed);
-  Robot robot = build_robot(scene);
-  Equations equations(robot, 1e-9);
-  equations.set_instant(0, true, StageRates{});
-  equations.mark_start();
-  const StageRates rates = rates_of(setting, robot, equations, numbers);
-  equations.hold_bodies(setting.bodies_held);
-  equations.set_instant(0, true, rates);
-  disturb(robot, equations, numbers, 0.05);
-  equations.evaluate();
-  if (setting.fraction < 1) equations.set_fraction(setting.fraction);
-  if (setting.relaxation > 0) equations.set_relaxation(setting.relaxation);
-  if (setting.softness > 0) equations.set_softness(setting.softness);
-  equations.set_instant(0, true, rates);  // now that there are states, segments are cut
-  disturb(robot, equations, numbers, 0.05);
-  return direction_error(equations);
-}
-
-// fourth-order differences reach 1e-9 and better; round-off of stiff inertia is most of that
-constexpr double kTolerance = 1e-7;
-
-/// Of rods discretised in every way, or in the scene's.
-void expect_exact(Scene scene, const Setting& setting, const std::string& what) {
-  std::vector<Method> methods{scene.solver.method};
-  if (scene.solver.method == Method::kAuto)
-    methods.assign(std::begin(kEveryMethod), std::end(kEveryMethod));
-  scene.solver.order = 3;
-  for (Method method : methods)
-    for (unsigned seed = 1; seed <= 3; ++seed) {
-      scene.solver.method = method;
-      EXPECT_LT(slope_error(scene, setting, seed), kTolerance)
-          << what << ", state " << seed << ", " << method_name(method);
-    }
-}
 
 constexpr EndJoint kHeld[] = {EndJoint::kFixed, EndJoint::kRevolute, EndJoint::kUniversal,
                               EndJoint::kBall};
@@ -71,12 +11,6 @@ constexpr ArcIntegrator kIntegrators[] = {ArcIntegrator::kEuler, ArcIntegrator::
                                           ArcIntegrator::kGauss2, ArcIntegrator::kGauss4,
                                           ArcIntegrator::kGauss6};
 const Pose kTop{Eigen::AngleAxisd(0.4, Vec3(0.6, 0.8, 0)).toRotationMatrix(), {0.1, 0.05, 0.85}};
-
-void set_all_effects(Scene& scene) {
-  for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kShear, Effect::kRotaryInertia,
-                   Effect::kDamping})
-    scene.effects.set(e, true);
-}
 
 std::string label(int a, int b, bool spin) {
   return "base " + std::to_string(a) + ", tip " + std::to_string(b) + (spin ? ", spin free" : "");
@@ -103,7 +37,7 @@ TEST(NewtonDirection, IsExactForARodBentAtRest) {
   scene.rods[1].rest_curvature = {-0.5, 0, 1.1};
   expect_exact(scene, {}, "statics");
   Setting dynamics;
-  dynamics.mode = Mode::kGeneralizedAlpha;
+  dynamics.mode = Rates::kGeneralizedAlpha;
   expect_exact(scene, dynamics, "dynamics");
 }
 
@@ -127,8 +61,8 @@ TEST(NewtonDirection, IsExactForRodsBetweenMovingBodies) {
       expect_exact(scene, {}, what + ", statics");
       set_all_effects(scene);
       expect_exact(scene, {}, what + ", statics, extensible");
-      expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
-      expect_exact(scene, {Mode::kGeneralizedAlpha}, what + ", dynamics without body rates");
+      expect_exact(scene, {Rates::kBackwardEuler}, what + ", dynamics");
+      expect_exact(scene, {Rates::kGeneralizedAlpha}, what + ", dynamics without body rates");
     }
 }
 
@@ -139,7 +73,7 @@ TEST(NewtonDirection, IsExactForEveryEffectAlone) {
     scene.effects.set(Effect::kGravity, false);
     scene.effects.set(e, true);
     expect_exact(scene, {}, std::string("statics, ") + effect_name(e));
-    expect_exact(scene, {Mode::kBackwardEuler}, std::string("dynamics, ") + effect_name(e));
+    expect_exact(scene, {Rates::kBackwardEuler}, std::string("dynamics, ") + effect_name(e));
   }
 }
 
@@ -156,10 +90,10 @@ TEST(NewtonDirection, IsExactForSectionsAndRestShapesThatVary) {
     rod.rest_samples = {{0, {0.8, -1.2, 0.6}}, {0.3, {0.2, 0.4, 1}}, {1, {-0.5, 0, 1.1}}};
   }
   expect_exact(scene, {}, "statics");
-  expect_exact(scene, {Mode::kBackwardEuler}, "dynamics");
+  expect_exact(scene, {Rates::kBackwardEuler}, "dynamics");
   set_all_effects(scene);
   scene.effects.set(Effect::kDrag, true);
-  expect_exact(scene, {Mode::kGeneralizedAlpha}, "dynamics, everything");
+  expect_exact(scene, {Rates::kGeneralizedAlpha}, "dynamics, everything");
 }
 
 TEST(NewtonDirection, IsExactInAFluid) {
@@ -170,8 +104,8 @@ TEST(NewtonDirection, IsExactInAFluid) {
     scene.wind = {0.8, -0.4, 0.5};
     const std::string what = stretches ? "extensible" : "inextensible";
     expect_exact(scene, {}, what + ", statics");
-    expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
-    expect_exact(scene, {Mode::kGeneralizedAlpha}, what + ", dynamics without body rates");
+    expect_exact(scene, {Rates::kBackwardEuler}, what + ", dynamics");
+    expect_exact(scene, {Rates::kGeneralizedAlpha}, what + ", dynamics without body rates");
   }
 }
 
@@ -182,10 +116,10 @@ TEST(NewtonDirection, IsExactForEveryIntegrator) {
     scene.solver.integrator = integrator;
     scene.solver.points = 8;
     expect_exact(scene, {}, what + ", inextensible");
-    expect_exact(scene, {Mode::kBackwardEuler}, what + ", inextensible, dynamics");
+    expect_exact(scene, {Rates::kBackwardEuler}, what + ", inextensible, dynamics");
     set_all_effects(scene);
     expect_exact(scene, {}, what + ", extensible");
-    expect_exact(scene, {Mode::kBackwardEuler}, what + ", extensible, dynamics");
+    expect_exact(scene, {Rates::kBackwardEuler}, what + ", extensible, dynamics");
   }
 }
 
@@ -203,20 +137,11 @@ TEST(NewtonDirection, IsExactAcrossManySegments) {
   ASSERT_GE(segments(1. / 300), 2);
   ASSERT_GE(segments(1. / 4000), 4);
   for (double h : {1. / 300, 1. / 4000}) {
-    expect_exact(scene, {Mode::kBackwardEuler, h}, "h = " + std::to_string(h));
-    expect_exact(scene, {Mode::kGeneralizedAlpha, h}, "h = " + std::to_string(h));
+    expect_exact(scene, {Rates::kBackwardEuler, h}, "h = " + std::to_string(h));
+    expect_exact(scene, {Rates::kGeneralizedAlpha, h}, "h = " + std::to_string(h));
   }
   set_all_effects(scene);
-  expect_exact(scene, {Mode::kBackwardEuler, 1. / 4000}, "extensible");
-}
-
-LoadSpec sample_load(bool follower) {
-  LoadSpec load;
-  load.follower = follower;
-  load.force = {0.8, -0.5, 0.6};
-  load.torque = {-0.3, 0.4, 0.5};
-  load.R_expressed = Eigen::AngleAxisd(0.7, Vec3::UnitX()).toRotationMatrix();
-  return load;
+  expect_exact(scene, {Rates::kBackwardEuler, 1. / 4000}, "extensible");
 }
 
 TEST(NewtonDirection, IsExactUnderDeadAndFollowerLoads) {
@@ -229,7 +154,7 @@ TEST(NewtonDirection, IsExactUnderDeadAndFollowerLoads) {
       scene.loads.push_back(load);
       const std::string what = "s = " + std::to_string(s) + (follower ? ", follower" : ", dead");
       expect_exact(scene, {}, what);
-      expect_exact(scene, {Mode::kBackwardEuler, 1. / 2000}, what + ", dynamics");
+      expect_exact(scene, {Rates::kBackwardEuler, 1. / 2000}, what + ", dynamics");
     }
     Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kFixed);
     LoadSpec load = sample_load(follower);
@@ -249,7 +174,7 @@ TEST(NewtonDirection, IsExactUnderLoadsAlongRods) {
   }
   expect_exact(scene, {}, "inextensible, statics");
   set_all_effects(scene);
-  expect_exact(scene, {Mode::kBackwardEuler}, "extensible, dynamics");
+  expect_exact(scene, {Rates::kBackwardEuler}, "extensible, dynamics");
 }
 
 DriveSpec joint_drive(int joint, DriveQuantity quantity, int freedom = 0) {
@@ -261,65 +186,6 @@ DriveSpec joint_drive(int joint, DriveQuantity quantity, int freedom = 0) {
   return drive;
 }
 
-/// One of each way, all on the rod in the middle; one ends before the tip.
-Scene chain_with_tendons(EndJoint base) {
-  Scene scene = chain_of_rods(base, EndJoint::kRevolute);
-  for (int k = 0; k < 3; ++k) {
-    TendonSpec tendon;
-    tendon.name = "tendon_" + std::to_string(k);
-    tendon.rod = 1;
-    tendon.route = static_cast<TendonRoute>(k);
-    tendon.radius = 0.2 + 0.05 * k;
-    tendon.angle = 0.7 + k;
-    tendon.turns = 0.6;
-    tendon.points = {{0, 0.2, 0.1}, {0.4, -0.1, 0.15}, {1, 0, -0.2}};
-    tendon.termination = k == 1 ? 0.7 : 1;
-    scene.tendons.push_back(tendon);
-    DriveSpec drive;
-    drive.tendon = k;
-    drive.quantity = DriveQuantity::kTension;
-    drive.profile = constant_profile(0.8 + 0.4 * k);
-    scene.drives.push_back(drive);
-  }
-  return scene;
-}
-
-TEST(NewtonDirection, IsExactWithTendons) {
-  for (EndJoint base : {EndJoint::kFixed, EndJoint::kBall}) {
-    Scene scene = chain_with_tendons(base);
-    expect_exact(scene, {}, "statics");
-    expect_exact(scene, {Mode::kBackwardEuler}, "dynamics");
-    Setting setting;
-    setting.softness = 2e-2;
-    setting.relaxation = 2;
-    setting.fraction = 0.4;
-    expect_exact(scene, setting, "soft rods, drag, part of the tension");
-    scene.effects.set(Effect::kExtension, true);
-    expect_exact(scene, {}, "statics, extensible");
-    set_all_effects(scene);
-    expect_exact(scene, {}, "statics, all effects");
-    expect_exact(scene, {Mode::kBackwardEuler}, "dynamics, all effects");
-    expect_exact(scene, {Mode::kGeneralizedAlpha, 1. / 4000}, "dynamics, many segments");
-  }
-}
-
-// Those whose displacement is given are found taut and slack among the states.
-TEST(NewtonDirection, IsExactForTensionsThatAreUnknown) {
-  for (EndJoint base : {EndJoint::kFixed, EndJoint::kBall}) {
-    Scene scene = chain_with_tendons(base);
-    for (const int k : {0, 2}) {
-      scene.drives[static_cast<std::size_t>(k)].quantity = DriveQuantity::kDisplacement;
-      scene.drives[static_cast<std::size_t>(k)].profile = constant_profile(0.03);
-    }
-    expect_exact(scene, {}, "statics");
-    expect_exact(scene, {Mode::kBackwardEuler}, "dynamics");
-    set_all_effects(scene);
-    expect_exact(scene, {}, "statics, all effects");
-    expect_exact(scene, {Mode::kGeneralizedAlpha}, "dynamics, all effects");
-    expect_exact(scene, {Mode::kGeneralizedAlpha, 1. / 4000}, "dynamics, many segments");
-  }
-}
-
 TEST(NewtonDirection, IsExactForFreeJointsWithSpringsAndDampers) {
   for (JointKind first : {JointKind::kRevolute, JointKind::kPrismatic, JointKind::kBall,
                           JointKind::kUniversal, JointKind::kPlanar})
@@ -329,8 +195,8 @@ TEST(NewtonDirection, IsExactForFreeJointsWithSpringsAndDampers) {
       const std::string what = "joints " + std::to_string(static_cast<int>(first)) + " and " +
                                std::to_string(static_cast<int>(second));
       expect_exact(scene, {}, what);
-      expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
-      expect_exact(scene, {Mode::kGeneralizedAlpha}, what + ", dynamics without body rates");
+      expect_exact(scene, {Rates::kBackwardEuler}, what + ", dynamics");
+      expect_exact(scene, {Rates::kGeneralizedAlpha}, what + ", dynamics without body rates");
     }
 }
 
@@ -343,7 +209,7 @@ TEST(NewtonDirection, IsExactForDrivenJoints) {
       const std::string what = "joint " + std::to_string(static_cast<int>(kind)) + ", drive " +
                                std::to_string(static_cast<int>(quantity));
       expect_exact(scene, {}, what);
-      expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+      expect_exact(scene, {Rates::kBackwardEuler}, what + ", dynamics");
     }
 }
 
@@ -358,7 +224,7 @@ TEST(NewtonDirection, IsExactForOneDrivenAxisOfSeveral) {
                                  std::to_string(freedom) + ", drive " +
                                  std::to_string(static_cast<int>(quantity));
         expect_exact(scene, {}, what);
-        expect_exact(scene, {Mode::kBackwardEuler}, what + ", dynamics");
+        expect_exact(scene, {Rates::kBackwardEuler}, what + ", dynamics");
       }
 }
 
@@ -371,7 +237,7 @@ TEST(NewtonDirection, IsExactForStopsAndFriction) {
       joint.friction = 0.1;
     }
     expect_exact(scene, {}, "stops, statics");
-    expect_exact(scene, {Mode::kBackwardEuler}, "stops, dynamics");
+    expect_exact(scene, {Rates::kBackwardEuler}, "stops, dynamics");
   }
 }
 
@@ -396,4 +262,4 @@ TEST(NewtonDirection, IsExactOnEveryRungOfTheLadder) {
 }
 
 }  // namespace
-}  // namespace cprsim
+}  // namespace cprsim::newton_direction

@@ -188,6 +188,16 @@ TEST(PlanarDirection, IsExactAcrossManySegments) {
   expect_exact(scene, fine, "all effects");
 }
 
+TEST(PlanarDirection, IsExactWithDisks) {
+  Scene scene = planar_chain(oblique_plane(), EndJoint::kFixed, EndJoint::kRevolute);
+  scene.rods[1].disks = {{0.3, 0.2, 0.2}, {0.3, 0.1, 0}, {1, 0.1, 0.3}};
+  expect_exact(scene, {}, "statics");
+  expect_exact(scene, {true}, "dynamics");
+  set_all_effects(scene);
+  expect_exact(scene, {true, SchemeKind::kGeneralizedAlpha}, "dynamics, all effects");
+  expect_exact(scene, {true, SchemeKind::kBackwardEuler, 1. / 4000}, "many segments");
+}
+
 TEST(PlanarDirection, IsExactUnderDeadAndFollowerLoads) {
   const Plane plane = oblique_plane();
   for (bool follower : {false, true})
