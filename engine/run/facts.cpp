@@ -26,6 +26,14 @@ double drag_number(const RodSpec& spec, const SectionProperties& s, const Scene&
   return number;
 }
 
+/// Dunkerley: 1/omega² is the sum of those of the rod alone and of each disk on a rod without mass.
+double lowered_by_disks(double omega, const RodSpec& spec, double EI, double L) {
+  double sum = 1 / (omega * omega);
+  for (const DiskSpec& disk : spec.disks)
+    sum += disk.mass * std::pow(disk.s * L, 3) / (3 * EI);
+  return 1 / std::sqrt(sum);
+}
+
 RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan) {
   RodFacts f;
   const SectionProperties& s = rod.section;
@@ -47,7 +55,8 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   f.torsion = s.K_bt.z();
   f.axial = s.K_se.z();
   f.shear_x = s.K_se.x();
-  const double omega = s.rhoA > 0 ? std::pow(kFirstRoot / L, 2) * std::sqrt(EI / s.rhoA) : 0;
+  double omega = s.rhoA > 0 ? std::pow(kFirstRoot / L, 2) * std::sqrt(EI / s.rhoA) : 0;
+  if (omega > 0 && !rod.spec->disks.empty()) omega = lowered_by_disks(omega, *rod.spec, EI, L);
   f.first_frequency = omega / (2 * std::numbers::pi);
   f.buckling_load = std::pow(std::numbers::pi / (2 * L), 2) * EI;
   const bool dynamic = scene.simulation.mode == Mode::kDynamic;
@@ -63,6 +72,8 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
     f.segments = std::clamp(static_cast<int>(std::ceil(f.growth_exponent / 6)), 1, f.elements);
   f.unknowns = rod.model->unknown_count();
   f.gravity_number = s.rhoA * 9.81 * std::pow(L, 3) / EI;
+  for (const DiskSpec& disk : rod.spec->disks)
+    f.gravity_number += disk.mass * 9.81 * L * L / EI;
   f.shear_number = s.K_se.x() > 0 ? EI / (s.K_se.x() * L * L) : 0;
   f.extension_number = s.K_se.z() > 0 ? EI / (s.K_se.z() * L * L) : 0;
   f.damping_ratio = omega * std::max(s.B_bt.x(), s.B_bt.y()) / (2 * EI);

@@ -7,6 +7,7 @@
 
 #include "tests/engine/robot/direction_error.h"
 #include "tests/engine/robot/sample_scenes.h"
+#include "tests/support/methods.h"
 
 namespace cprsim {
 namespace {
@@ -131,6 +132,7 @@ struct Case {
   double h = 0;  ///< of the step; 0: statics
   unsigned seed = 1;
   Method method = Method::kShooting;
+  bool disks = false;
 };
 
 ShapeSpec ball() {
@@ -148,6 +150,7 @@ double slope_error(const Case& c) {
   for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kRotaryInertia})
     scene.effects.set(e, true);
   if (c.method != Method::kShooting) cut_for_contact(scene, c.method);
+  if (c.disks) scene.rods[1].disks = {{0.35, 0.2, 0.3}, {0.7, 0.1, 0.2}, {1, 0.1, 0.3}};
   Numbers numbers(c.seed);
   Robot robot = build_robot(scene);
   touch(robot, surfaces, c.grip, c.others);
@@ -179,6 +182,14 @@ TEST_P(PairDirection, IsExactByEveryMethod) {
     for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
       for (double h : {0.0, 0.01})
         EXPECT_LT(slope_error({grip, GetParam(), h, 1, method}), kSlopeTolerance)
+            << static_cast<int>(method) << ", " << static_cast<int>(grip) << ", step " << h;
+}
+
+TEST_P(PairDirection, IsExactWithDisks) {
+  for (Method method : kEveryMethod)
+    for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
+      for (double h : {0.01, 1e-3})
+        EXPECT_LT(slope_error({grip, GetParam(), h, 1, method, true}), kSlopeTolerance)
             << static_cast<int>(method) << ", " << static_cast<int>(grip) << ", step " << h;
 }
 
