@@ -98,7 +98,7 @@ void Simulation::Parts::step_dynamic() {
     target = std::min(target, scene.max_step_size);
   // Backward Euler from a distance, once: points that chatter in short steps settle in a longer
   // one.
-  bool rescued = false, lagged = false;
+  bool rescued = false, lagged = false, halved = false;
   const auto rescue = [&](double& to) {
     rescued = true;
     marcher.cushion(true);
@@ -140,6 +140,9 @@ void Simulation::Parts::step_dynamic() {
         h = landed && step < 0.5 * target ? std::max(target, next) : next;
         last_error = outcome.error;
       }
+      // what had to be halved would have to be again
+      if (plan.adaptive && cushioned > 0 && !retraces)
+        h = halved ? step : std::min(scene.max_step_size, std::max(h, 2 * step));
       const double there = retraces && step == on_course - t ? on_course : t + step;
       arrive(landed ? stop : there, step, outcome);
       contacts.lag_friction(false);
@@ -185,6 +188,7 @@ void Simulation::Parts::step_dynamic() {
       return;
     }
     ++statistics.retried;
+    halved = true;
     target = 0.5 * step;
   }
 }
