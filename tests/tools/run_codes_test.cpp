@@ -84,8 +84,9 @@ TEST_F(RunCodes, AreAllSeenAndExplained) {
   EXPECT_TRUE(shell("PATH=/nowhere", "run stick.xml --video x.mp4").complains("error[E704]: "));
   const Answer unfilmed = shell("PATH=/nowhere", "run filmed.xml");
   EXPECT_TRUE(unfilmed.complains("warning[W701]: ")) << unfilmed.err;
-  EXPECT_TRUE(
-      shell("timeout -s INT 0.5", "run stick.xml --duration 10000").complains("error[E606]: "));
+  // in the foreground: the shell, in whose group it is, must live to wait for it
+  EXPECT_TRUE(shell("timeout --foreground -s INT 0.5", "run stick.xml --duration 10000")
+                  .complains("error[E606]: "));
   for (const char* code : {"E704", "W701", "E606"})
     seen.emplace_back(code);
 
