@@ -62,7 +62,7 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip) {
       contact_at(1, 0, grip, numbers), contact_at(1, 0.3, grip, numbers),
       contact_at(2, 0.8, grip, numbers), contact_at(4, 0, grip, numbers)};
   // two of them give
-  for (std::size_t i : {1, 3}) {
+  for (std::size_t i : {1U, 3U}) {
     robot.rods[1].model->touching()->contacts()[i].give = 0.05;
     robot.rods[1].model->touching()->contacts()[i].lag = 0.02;
   }
