@@ -4,16 +4,8 @@
 namespace cprsim {
 
 const char* method_name(Method method) {
-  switch (method) {
-    case Method::kAuto:
-      return "auto";
-    case Method::kShooting:
-      return "shooting";
-    case Method::kStrain:
-      return "strain";
-    case Method::kCollocation:
-      return "collocation";
-  }
+  for (const MethodWord& each : kMethodWords)
+    if (each.method == method) return each.word;
   return "";
 }
 

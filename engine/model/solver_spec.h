@@ -10,10 +10,27 @@
 namespace cprsim {
 
 enum class Mode { kStatic, kQuasistatic, kDynamic };
-/// How a rod is discretised.
-enum class Method { kAuto, kShooting, kStrain, kCollocation };
+/// How a rod is discretised. The loader, its reference and messages take the words from here; a new
+/// method adds a line to both lists, and a case in engine/rod/make_rod.cpp.
+enum class Method {
+  kAuto,
+  kShooting,
+  kStrain,
+  kCollocation,
+};
 
-/// As scenes call it.
+struct MethodWord {
+  const char* word;  ///< as scenes call it
+  Method method;
+};
+
+inline constexpr MethodWord kMethodWords[] = {
+    {"auto", Method::kAuto},
+    {"shooting", Method::kShooting},
+    {"strain", Method::kStrain},
+    {"collocation", Method::kCollocation},
+};
+
 const char* method_name(Method method);
 
 enum class ArcIntegrator { kEuler, kRk4, kGauss2, kGauss4, kGauss6 };

@@ -205,7 +205,7 @@ void add_disks(RobotRod& rod) {
       rod.breaks.push_back(disk.s);
 }
 
-void add_rods(Robot& robot) {
+void add_rods(Robot& robot, const RodMaker& make) {
   const Scene& scene = *robot.scene;
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
     const RodSpec& spec = scene.rods[i];
@@ -230,7 +230,7 @@ void add_rods(Robot& robot) {
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);
     rod.choice = choose_method(plan);
-    rod.model = make_rod(rod.choice.method, plan);
+    rod.model = make(rod.choice.method, plan);
     robot.rods.push_back(std::move(rod));
   }
 }
@@ -312,7 +312,7 @@ RobotScale choose_scale(const Robot& robot) {
 
 }  // namespace
 
-Robot build_robot(const Scene& scene) {
+Robot build_robot(const Scene& scene, const RodMaker& make_rods) {
   Robot robot;
   robot.scene = &scene;
   if (scene.effects.has(Effect::kGravity)) robot.gravity = scene.gravity;
@@ -324,7 +324,7 @@ Robot build_robot(const Scene& scene) {
   add_joints(robot);
   add_actions(robot);
   place_driven_bodies(robot);
-  add_rods(robot);
+  add_rods(robot, make_rods ? make_rods : RodMaker(make_rod));
   robot.scale = choose_scale(robot);
   for (Joint& joint : robot.joints)
     joint.set_scale(robot.scale.length, robot.scale.moment(), robot.scale.force);

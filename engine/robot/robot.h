@@ -12,6 +12,7 @@
 #include "engine/robot/body.h"
 #include "engine/robot/joint.h"
 #include "engine/rod/fineness.h"
+#include "engine/rod/rod_maker.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -121,7 +122,8 @@ TendonPull pull_at(const RobotTendon& tendon, double t, bool before);
 /// Into the rod's forcing, times `share`; breaks of tendons are stations without a load.
 void pull_tendons(RobotRod& rod, double t, bool before, double share);
 
+/// @param make_rods makes the rods; empty: make_rod().
 /// @throws std::invalid_argument for what this version cannot do.
-Robot build_robot(const Scene& scene);
+Robot build_robot(const Scene& scene, const RodMaker& make_rods = {});
 
 }  // namespace cprsim

@@ -25,9 +25,10 @@ std::string short_number(double x) {
   return text;
 }
 
-Simulation::Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies) {
+Simulation::Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies,
+                       const RodMaker& make_rods) {
   const auto begin = Clock::now();
-  parts_ = std::make_unique<Parts>(std::move(scene), std::move(free_bodies));
+  parts_ = std::make_unique<Parts>(std::move(scene), std::move(free_bodies), make_rods);
   parts_->facts = problem_facts(parts_->robot, parts_->equations, parts_->plan);
   parts_->statistics.build_seconds = seconds_since(begin);
 }

@@ -11,6 +11,7 @@
 #include "engine/math/archive.h"
 #include "engine/model/scene.h"
 #include "engine/robot/free_bodies.h"
+#include "engine/rod/rod_maker.h"
 #include "engine/run/snapshot.h"
 #include "engine/solve/report.h"
 
@@ -79,9 +80,11 @@ class Simulation {
  public:
   /// @param free_bodies may be null if the scene has no free bodies or nothing is to integrate
   /// them.
+  /// @param make_rods makes the rods; empty: make_rod().
   /// @throws std::invalid_argument if the scene asks for what the engine cannot do (a loader checks
   /// first).
-  explicit Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies = nullptr);
+  explicit Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies = nullptr,
+                      const RodMaker& make_rods = {});
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

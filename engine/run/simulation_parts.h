@@ -55,10 +55,10 @@ struct Simulation::Parts {
   RunStatistics statistics;
   Snapshot now, before;
 
-  Parts(Scene s, std::unique_ptr<FreeBodies> free)
+  Parts(Scene s, std::unique_ptr<FreeBodies> free, const RodMaker& make_rods)
       : scene(with_continuous_drives(std::move(s))),
         free_bodies(std::move(free)),
-        robot(build_robot(scene)),
+        robot(build_robot(scene, make_rods)),
         contacts(robot),
         equations(robot, scene.solver.residual_tolerance.value_or(1e-9)),
         plan(plan_steps(scene)),

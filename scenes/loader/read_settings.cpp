@@ -77,10 +77,6 @@ constexpr Word<Basis> kBases[] = {{"legendre", Basis::kLegendre},
                                   {"chebyshev", Basis::kChebyshev},
                                   {"bspline", Basis::kBspline},
                                   {"nurbs", Basis::kNurbs}};
-constexpr Word<Method> kMethods[] = {{"auto", Method::kAuto},
-                                     {"shooting", Method::kShooting},
-                                     {"strain", Method::kStrain},
-                                     {"collocation", Method::kCollocation}};
 constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwardEuler},
                                          {"bdf2", SchemeKind::kBdf2},
                                          {"bdf_alpha", SchemeKind::kBdfAlpha},
@@ -263,7 +259,9 @@ void check_step(Reading& r, const Node& where) {
 }  // namespace
 
 std::optional<Method> method_attribute(const Node& node) {
-  return choose(kMethods, node.value("method"));
+  for (const MethodWord& each : kMethodWords)
+    if (each.word == node.value("method")) return each.method;
+  return std::nullopt;
 }
 
 void read_settings(Reading& r, const Node& world) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The flexible half of the table: attributes.
+#include "engine/model/solver_spec.h"
 #include "scenes/loader/schema.h"
 
 namespace cprsim {
@@ -8,6 +9,17 @@ namespace {
 
 using T = ValueType;
 using S = Status;
+
+/// "auto|shooting|..."
+const char* method_words() {
+  static const std::string words = [] {
+    std::string all;
+    for (const MethodWord& each : kMethodWords)
+      all += (all.empty() ? "" : "|") + std::string(each.word);
+    return all;
+  }();
+  return words.c_str();
+}
 
 }  // namespace
 
@@ -38,10 +50,10 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"initial", "file", T::kText, "available: solve=\"static\"", false, S::kLater,
        "A saved state."},
       {"initial_velocity", "of", T::kRef, "", true, yes, "The link."},
-      {"cprsim:solver", "method", T::kChoice, "auto|shooting|strain|collocation", true, yes,
+      {"cprsim:solver", "method", T::kChoice, method_words(), true, yes,
        "Discretisation of the rods."},
-      {"cprsim:rod cprsim:rod_class", "method", T::kChoice, "auto|shooting|strain|collocation",
-       false, yes, "Discretisation of this rod, if not the solver's."},
+      {"cprsim:rod cprsim:rod_class", "method", T::kChoice, method_words(), false, yes,
+       "Discretisation of this rod, if not the solver's."},
       {"space", "points", T::kCount, "1", false, yes, "shooting: steps along each rod."},
       {"space", "integrator", T::kChoice, "euler|rk4|gauss2|gauss4|gauss6|!magnus4|!dopri5", false,
        yes, "shooting: rule for each step."},

@@ -55,6 +55,14 @@ TEST(Grammar, KnowsTheAttributesOfTheTable) {
         << rule.owners << "/@" << rule.name;
 }
 
+TEST(Grammar, KnowsTheMethodsOfTheSolver) {
+  std::string words;
+  for (const MethodWord& each : kMethodWords)
+    words += (words.empty() ? "" : "|") + ('"' + std::string(each.word) + '"');
+  EXPECT_NE(file_text(kSchema + "cprsim.rnc").find("method = " + words + "\n"), std::string::npos)
+      << words;
+}
+
 TEST(Table, DocumentsEveryElementAndNamesExistingParents) {
   std::set<std::string_view> ids;
   for (const ElementRule& rule : element_rules())
