@@ -5,9 +5,11 @@
 #include "tests/support/methods.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <numbers>
 #include <stdexcept>
 
 #include "tests/support/elastica.h"
@@ -139,6 +141,103 @@ std::string row(const Case& one, const Fineness& f, int repetitions) {
   return text;
 }
 
+double tip_error(const Scene& scene, const Vec3& exact) {
+  return (tip_at_rest(scene).point - exact).norm() / 0.4;
+}
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", x);
+  return text;
+}
+
+/// log2 of what twice as many pieces gain; nothing where round-off is all that is left.
+std::string order_of(double coarse, double fine) {
+  if (fine < 1e-11) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", std::log2(coarse / fine));
+  return text;
+}
+
+/// Errors of the cantilever for three numbers of pieces, and the orders they show.
+void add_orders(std::ostream& page, const std::string& name, const Scene& scene, const Vec3& exact,
+                std::initializer_list<int> pieces) {
+  page << "| " << name << " |";
+  double before = 0;
+  for (const int n : pieces) {
+    Scene one = scene;
+    one.solver.points = n;
+    one.solver.elements = n;
+    const double error = tip_error(one, exact);
+    page << ' ' << n << ": " << number(error);
+    if (before > 0) page << " | " << order_of(before, error);
+    page << " |";
+    before = error;
+  }
+  page << "\n";
+}
+
+void write_orders(std::ostream& page, const Case& elastica) {
+  page << "\n## Orders\n\nThe first of these cantilevers. Each doubling of the pieces, and the "
+          "order that the error shows in it; the strain basis has one element, of which the order "
+          "grows instead.\n\n| shooting | cells: error | | order | | order |\n"
+          "|---|---|---|---|---|---|\n";
+  const std::pair<const char*, ArcIntegrator> rules[] = {{"euler", ArcIntegrator::kEuler},
+                                                         {"gauss2", ArcIntegrator::kGauss2},
+                                                         {"rk4", ArcIntegrator::kRk4},
+                                                         {"gauss4", ArcIntegrator::kGauss4},
+                                                         {"gauss6", ArcIntegrator::kGauss6}};
+  for (const auto& [name, rule] : rules) {
+    Scene scene = elastica.scene;
+    scene.solver.method = Method::kShooting;
+    scene.solver.integrator = rule;
+    add_orders(page, name, scene, elastica.exact, {6, 12, 24});
+  }
+  page << "\n| collocation, degree | elements: error | | order | | order |\n"
+          "|---|---|---|---|---|---|\n";
+  for (int degree = 2; degree <= 8; ++degree) {
+    Scene scene = elastica.scene;
+    scene.solver.method = Method::kCollocation;
+    scene.solver.degree = degree;
+    add_orders(page, std::to_string(degree), scene, elastica.exact, {8, 16, 32});
+  }
+  page << "\n| strain, order |";
+  for (int order = 1; order <= 10; ++order)
+    page << ' ' << order << " |";
+  page << "\n|---|";
+  for (int order = 1; order <= 10; ++order)
+    page << "---|";
+  page << "\n| error |";
+  for (int order = 1; order <= 10; ++order)
+    page << ' '
+         << number(tip_error(cut(elastica.scene, {Method::kStrain, 1, order}), elastica.exact))
+         << " |";
+  page << "\n";
+}
+
+void write_slenderness(std::ostream& page) {
+  constexpr Fineness kSame[] = {
+      {Method::kShooting, 6, 6}, {Method::kStrain, 1, 8}, {Method::kCollocation, 8, 7}};
+  page << "\n## Thick to hair-thin: nothing locks\n\nThe same cantilever with shear and extension, "
+          "by the same unknowns whatever its radius; the error of a method that locked would grow "
+          "with L / r.\n\n| L / r | EI / GA L² | shooting, 6 cells | strain, order 8 | "
+          "collocation, 8 "
+          "of degree 7 |\n|---|---|---|---|---|\n";
+  for (const double slenderness : {20., 200., 2000., 20000.}) {
+    Scene scene;
+    scene.rods.push_back(steel_rod(0.4, 0.4 / slenderness));
+    switch_on(scene, {Effect::kExtension, Effect::kShear});
+    const double EI = bending_stiffness(scene.rods[0]);
+    add_load(scene, 1, {5 * EI / 0.16, 0, 0});
+    const Vec3 exact = tip_at_rest(cut(scene, {Method::kShooting, 60, 6})).point;
+    const double GA = 80e9 * std::numbers::pi * std::pow(0.4 / slenderness, 2);
+    page << "| " << slenderness << " | " << number(EI / (GA * 0.16)) << " |";
+    for (const Fineness& f : kSame)
+      page << ' ' << number(tip_error(cut(scene, f), exact)) << " |";
+    page << "\n";
+  }
+}
+
 void write_page(const std::string& folder, bool quick) {
   std::ofstream page(folder + "/methods.md");
   if (!page) throw std::runtime_error("cannot write to " + folder);
@@ -148,7 +247,8 @@ void write_page(const std::string& folder, bool quick) {
          "named. Order: of the table, or degree of the polynomials. Unknowns: of one rod. Time: "
          "from the scene in memory to the answer, the smallest of 9 runs on one core of a machine "
          "shared with others.\n";
-  for (const Case& one : all_cases()) {
+  const std::vector<Case> cases = all_cases();
+  for (const Case& one : cases) {
     page << "\n## " << one.title << "\n\n"
          << one.about
          << "\n\n| method | pieces | order | unknowns | error | iterations | µs |\n"
@@ -156,6 +256,8 @@ void write_page(const std::string& folder, bool quick) {
     for (const Fineness& f : kShown)
       page << row(one, f, quick ? 1 : 9);
   }
+  write_orders(page, cases.front());
+  write_slenderness(page);
 }
 
 }  // namespace
