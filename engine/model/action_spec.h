@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What acts on the robot from outside: drives and loads; and where drives are to bring it.
+// What acts on the robot from outside: drives, loads, magnetic fields; and where drives are to
+// bring it.
 #pragma once
 
 #include <array>
@@ -38,6 +39,17 @@ struct LoadSpec {
   Mat3 R_expressed = Mat3::Identity();  ///< non-follower: axes of expressed_in at t = 0 in the
                                         ///< world; follower: in the axes of `at` or of the section
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< in the expressed_in axes
+  bool has_profile = false;
+  Profile profile;
+};
+
+/// A magnetic field that magnetised rods are in, world axes: uniform, or that of a dipole; times
+/// profile(t) (constant 1 if the scene gives no time function).
+struct MagneticFieldSpec {
+  Place place;
+  bool dipole = false;
+  Vec3 uniform = Vec3::Zero();                          ///< T
+  Vec3 position = Vec3::Zero(), moment = Vec3::Zero();  ///< of the dipole, m and A m²
   bool has_profile = false;
   Profile profile;
 };

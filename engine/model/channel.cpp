@@ -39,11 +39,12 @@ void add_joint(ChannelList& list, const JointSpec& joint) {
   if (limited) add("limit", Quantity::kJointLimit, "N m", "N");
 }
 
-void add_sums(ChannelList& list, ChannelEntity kind) {
+void add_sums(ChannelList& list, const Scene& scene, ChannelEntity kind) {
   if (kind == ChannelEntity::kEnergy) {
     list.add("kinetic", Quantity::kEnergyKinetic);
     list.add("elastic", Quantity::kEnergyElastic);
     list.add("gravity", Quantity::kEnergyGravity);
+    if (scene.effects.has(Effect::kMagnetic)) list.add("magnetic", Quantity::kEnergyMagnetic);
     list.add("dissipated", Quantity::kEnergyDissipated);
     list.add("work", Quantity::kEnergyWork);
     list.add("total", Quantity::kEnergyTotal);
@@ -87,7 +88,7 @@ std::vector<ChannelScalar> scalars_of(const Scene& scene, const NamedEntity& ent
       list.add("displacement", Quantity::kDisplacement);
       break;
     default:
-      add_sums(list, entity.kind);
+      add_sums(list, scene, entity.kind);
   }
   return std::move(list.scalars);
 }

@@ -46,6 +46,7 @@ enum class Quantity {
   kEnergyKinetic,
   kEnergyElastic,
   kEnergyGravity,
+  kEnergyMagnetic,
   kEnergyDissipated,
   kEnergyWork,
   kEnergyTotal,

@@ -75,6 +75,7 @@ const char* unit_of(Quantity quantity) {
     case Quantity::kEnergyKinetic:
     case Quantity::kEnergyElastic:
     case Quantity::kEnergyGravity:
+    case Quantity::kEnergyMagnetic:
     case Quantity::kEnergyDissipated:
     case Quantity::kEnergyWork:
     case Quantity::kEnergyTotal:

@@ -18,9 +18,11 @@ enum class Effect {
   kContact,
   kSelfContact,
   kFriction,
-  kTendonFriction
+  kTendonFriction,
+  kMagnetic,
+  kThermal
 };
-constexpr int kEffectCount = 10;
+constexpr int kEffectCount = 12;
 
 /// Name as written in a scene, e.g. "rotary_inertia".
 const char* effect_name(Effect effect);

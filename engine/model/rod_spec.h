@@ -12,6 +12,7 @@
 #include "engine/model/body_spec.h"
 #include "engine/model/geometry.h"
 #include "engine/model/place.h"
+#include "engine/model/profile.h"
 #include "engine/model/solver_spec.h"
 
 namespace cprsim {
@@ -32,6 +33,7 @@ struct MaterialSpec {
   double youngs_modulus = 0;  ///< Pa
   double shear_modulus = 0;   ///< Pa, also when the scene gives Poisson's ratio
   Place place;
+  double thermal_expansion = 0;  ///< relative, 1/K
 };
 
 /// Direct stiffnesses that replace those of section and material. Bending x: about the section's x
@@ -52,6 +54,23 @@ struct DragSpec {
   double normal = 0, tangential = 0;  ///< force per length and squared speed, kg/m²
   double fluid_density = 0;           ///< kg/m³; 0: neither buoyancy nor added mass
   double added_mass = 0;  ///< fluid that follows a motion across the rod, over the fluid displaced
+  Place place;
+};
+
+/// Magnetisation from one place of a rod to another, fractions of its length: magnetic moment per
+/// length, in section axes, A m.
+struct MagnetSpec {
+  double from = 0, to = 1;
+  Vec3 moment = Vec3::Zero();
+};
+
+/// How much warmer a rod is than when it was without stress, the same all along it; times
+/// profile(t) (constant 1 if the scene gives no time function).
+struct TemperatureSpec {
+  double rise = 0;               ///< of the centreline, K
+  Vec2 gradient = Vec2::Zero();  ///< across the section along its x and y axes, K/m
+  bool has_profile = false;
+  Profile profile;
   Place place;
 };
 
@@ -97,6 +116,8 @@ struct RodSpec {
   std::optional<DampingSpec> damping;
   std::optional<DragSpec> drag;
   std::vector<DiskSpec> disks;  ///< by ascending s
+  std::vector<MagnetSpec> magnets;
+  std::optional<TemperatureSpec> temperature;
   bool gravity = true;
   SurfaceSpec surface;
   std::vector<std::string> without;  ///< effects switched off for this rod

@@ -35,7 +35,8 @@ struct Scene {
   std::string hash;  ///< of the bytes of all files, hex
 
   Vec3 gravity{0, 0, -9.81};
-  Vec3 wind = Vec3::Zero();  ///< current of the fluid that drag is of, m/s
+  Vec3 wind = Vec3::Zero();                        ///< current of the fluid that drag is of, m/s
+  std::vector<MagneticFieldSpec> magnetic_fields;  ///< their sum acts
   double max_step_size = 0.001;
   Effects effects;
   SimulationSpec simulation;

@@ -155,7 +155,8 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.damping = has(Effect::kDamping) && rod.spec->damping.has_value();
   plan.drag = rod.section.fluid.resists();
   plan.touches = !plan.plane && (has(Effect::kContact) || has(Effect::kSelfContact));
-  plan.line_loads = !rod.line_loads.empty();
+  plan.magnetic = rod.magnetic;
+  plan.line_loads = !rod.line_loads.empty() || rod.magnetic;
   for (const LoadSpec* load : rod.loads)
     plan.stations.push_back(load->rod_s);
   plan.stations.insert(plan.stations.end(), rod.breaks.begin(), rod.breaks.end());
@@ -194,6 +195,17 @@ void add_line_loads(RobotRod& rod) {
         rod.breaks.push_back(s);
 }
 
+void add_magnets(RobotRod& rod) {
+  if (!rod.magnetic) return;
+  if (rod.length_drive)
+    throw std::invalid_argument("the length of rod '" + rod.spec->name +
+                                "' cannot be driven: it is magnetised");
+  for (const MagnetSpec& magnet : rod.spec->magnets)
+    for (const double s : {magnet.from, magnet.to})
+      if (s > 0 && s < 1 && std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
+        rod.breaks.push_back(s);
+}
+
 // They are fastened to the material, which a length drive pulls through the base.
 void add_disks(RobotRod& rod) {
   if (rod.spec->disks.empty()) return;
@@ -223,7 +235,11 @@ void add_rods(Robot& robot, const RodMaker& make) {
       if (drive.rod == static_cast<int>(i)) rod.length_drive = &drive.profile;
     for (const LoadSpec& load : scene.loads)
       if (load.rod == static_cast<int>(i)) (load.to ? rod.line_loads : rod.loads).push_back(&load);
+    const auto has = [&](Effect e) { return scene.effects.has(e) && !spec.lacks(effect_name(e)); };
+    rod.magnetic = has(Effect::kMagnetic) && !spec.magnets.empty();
+    rod.heated = has(Effect::kThermal) && spec.temperature && spec.material;
     add_tendons(scene, i, rod);
+    add_magnets(rod);
     add_line_loads(rod);
     add_disks(rod);
     rod.gravity = spec.gravity && !spec.lacks("gravity");

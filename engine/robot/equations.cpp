@@ -58,6 +58,12 @@ void Equations::prepare_rods() {
       line.torque *= acting();
       forcing.lines.push_back(line);
     }
+    if (rod.magnetic) forcing.field = sources_at(*robot_.scene, t_, before_, acting());
+    if (rod.heated) {
+      forcing.heat = thermal_strain_at(*rod.spec, t_, before_);
+      forcing.heat.curvature *= acting();
+      forcing.heat.stretch *= acting();
+    }
     if (!rod.breaks.empty() || !rod.tendons.empty()) pull_tendons(rod, t_, before_, acting());
     forcing.tolerance = tolerance_;
     forcing.axial_softness = softness_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What loads and tendons do to a rod at an instant.
+// What loads, tendons, magnetic fields and heat do to a rod at an instant.
 #include "engine/robot/robot.h"
 
 namespace cprsim {
@@ -13,6 +13,41 @@ PointLoad load_at(const LoadSpec& load, double t, bool before) {
 LineLoad line_load_at(const LoadSpec& load, double t, bool before) {
   const PointLoad at = load_at(load, t, before);
   return {load.rod_s, *load.to, at.force, at.torque, at.follower};
+}
+
+MagneticSources sources_at(const MagneticFieldSpec& field, double t, bool before) {
+  const double f = field.has_profile ? field.profile.evaluate(t, before).value : 1.0;
+  MagneticSources sources;
+  if (!field.dipole) {
+    sources.uniform = f * field.uniform;
+    return sources;
+  }
+  const Vec3 &p = field.position, m = f * field.moment;
+  sources.dipoles.push_back({{p.x(), p.y(), p.z()}, {m.x(), m.y(), m.z()}});
+  return sources;
+}
+
+MagneticSources sources_at(const Scene& scene, double t, bool before, double share) {
+  MagneticSources all;
+  for (const MagneticFieldSpec& field : scene.magnetic_fields) {
+    const MagneticSources one = sources_at(field, t, before);
+    all.uniform += share * one.uniform;
+    for (MagneticDipole dipole : one.dipoles) {
+      for (double& component : dipole.moment)
+        component *= share;
+      all.dipoles.push_back(dipole);
+    }
+  }
+  return all;
+}
+
+// A section at T(x, y) = T + g_x x + g_y y stretches by alpha T(x, y) = (u × r)_z = u_x y - u_y x
+// and alpha T.
+ThermalStrain thermal_strain_at(const RodSpec& rod, double t, bool before) {
+  const TemperatureSpec& heat = *rod.temperature;
+  const double f = heat.has_profile ? heat.profile.evaluate(t, before).value : 1.0,
+               alpha = f * rod.material->thermal_expansion;
+  return {alpha * Vec3(heat.gradient.y(), -heat.gradient.x(), 0), alpha * heat.rise};
 }
 
 TendonPull pull_at(const RobotTendon& tendon, double t, bool before) {

@@ -51,7 +51,8 @@ struct RobotRod {
   std::vector<RobotTendon> tendons;
   std::vector<double> breaks;  ///< s / L of breaks of tendons and line loads: no load acts there
   bool gravity = true;
-  RodForcing forcing;  ///< at the current instant
+  bool magnetic = false, heated = false;  ///< by the effects and what the rod has
+  RodForcing forcing;                     ///< at the current instant
 };
 
 struct BodyLoad {
@@ -118,6 +119,13 @@ LineLoad line_load_at(const LoadSpec& load, double t, bool before);
 
 /// What a tendon's motor prescribes at time t; a tendon without one is slack.
 TendonPull pull_at(const RobotTendon& tendon, double t, bool before);
+
+/// Field of one source at time t; all of them, times `share`.
+MagneticSources sources_at(const MagneticFieldSpec& field, double t, bool before);
+MagneticSources sources_at(const Scene& scene, double t, bool before, double share);
+
+/// What heat does at time t to the strains of a rod that has a temperature.
+ThermalStrain thermal_strain_at(const RodSpec& rod, double t, bool before);
 
 /// Into the rod's forcing, times `share`; breaks of tendons are stations without a load.
 void pull_tendons(RobotRod& rod, double t, bool before, double share);

@@ -22,6 +22,7 @@
 
 #include "engine/rod/tableau.h"
 #include "engine/section/fluid_section.h"
+#include "engine/section/magnetic_field.h"
 #include "engine/section/tendon_section.h"
 
 namespace cprsim {
@@ -33,10 +34,11 @@ enum class CellLaw {
   kExtensible,         ///< stage v lifted
   kKirchhoffGeneral,   ///< kKirchhoff; sections may vary and have rotary inertia, t of (4)
   kExtensibleGeneral,  ///< kExtensible, likewise
-  kKirchhoffFluid,     ///< v = v0; a fluid's force in (3), loads along the rod in (3), (4)
+  kKirchhoffFluid,     ///< v = v0; a fluid's force in (3), loads along the rod and a magnetic
+                       ///< field's in (3), (4)
   kExtensibleFluid,    ///< stage v lifted, likewise
   kTendons,            ///< stage v lifted, and tendons are part of the law
-  kTendonsFluid        ///< likewise, with a fluid's force and loads along the rod
+  kTendonsFluid        ///< likewise, with what lies around a rod as in kKirchhoffFluid
 };
 
 constexpr bool has_tendons(CellLaw law) {
@@ -88,8 +90,9 @@ struct CellModel : CellSection {
   bool rotary = false;
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
-  FluidSection* fluid = nullptr;  ///< of the cell's stages, for the laws of a fluid
-  bool loaded = false;            ///< whether these have loads along the rod, too
+  FluidSection* fluid = nullptr;         ///< of the cell's stages, for the laws of a fluid
+  bool loaded = false;                   ///< whether these have moments per length, too
+  const MagneticField* field = nullptr;  ///< what magnetised ones of these are in, if any
   TendonSection* tendons =
       nullptr;  ///< of the cell's stages; only read where tendons are part of the law
 };

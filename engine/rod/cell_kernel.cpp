@@ -86,7 +86,7 @@ void evaluate(const CellModel& M, CellStage* st, const NodeState& start, NodeSta
     store(st[j].p, p);
     n_s[j] = at[j].k * p + load(st[j].b);
     if constexpr (immersed(law)) {
-      evaluate_surroundings(M.c_v, M.c_w, p, load_matrix(st[j].R), M.fluid[j]);
+      evaluate_surroundings(M.c_v, M.c_w, p, load_matrix(st[j].R), M.field, M.fluid[j]);
       n_s[j] = n_s[j] + load(M.fluid[j].force);
     }
   }
@@ -212,7 +212,11 @@ struct Linearization {
       add_cross(m_s[j], load(st[j].n), tau[j]);
       add_cross(m_s[j], -1.0 * load(st[j].tau), n[j]);
       if constexpr (immersed(law))
-        if (M.loaded) add_product(m_s[j], 1.0, load_matrix(M.fluid[j].moment_phi), phi[j]);
+        if (M.loaded) {
+          add_product(m_s[j], 1.0, load_matrix(M.fluid[j].moment_phi), phi[j]);
+          if (M.field && M.field->count > 0)
+            add_product(m_s[j], 1.0, load_matrix(M.fluid[j].moment_p), p[j]);
+        }
       if constexpr (!is_plain(law))
         if (M.rotary) add_product(m_s[j], 1.0, load_matrix(st[j].torque_phi), phi[j]);
     }

@@ -210,6 +210,7 @@ void CollocationRod::set_coefficients(const SectionProperties& section, PointMod
   model.c_v = rates_.c_v;
   model.c_w = rates_.c_w;
   model.body_rates = rates_.body_rates;
+  model.field = fluid_.field();
 }
 
 void CollocationRod::place_lines() {
@@ -221,7 +222,7 @@ void CollocationRod::place_lines() {
       inside.push_back(j == first || j == last ? 0.5 * (sites_[first].s + sites_[last].s)
                                                : sites_[j].s);
   }
-  fluid_.place(std::move(inside));
+  fluid_.place(std::move(inside), options_.magnets);
 }
 
 void CollocationRod::list_sections() {
@@ -243,10 +244,10 @@ void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing)
   forcing_ = forcing;
   if (tendons_) tendons_->set(forcing.tendons);
   assert(forcing_.loads.size() == station_of_.size());
+  fluid_.prepare(section_, sections_, rates, forcing_, track_);
   set_coefficients(section_, model_);
   for (std::size_t j = 0; j < models_.size(); ++j)
     set_coefficients(sections_[j], models_[j]);
-  fluid_.prepare(section_, sections_, rates, forcing_, track_);
   if (disks_) disks_->prepare(rates, forcing, track_);
   choose_units();
   update_point_inputs();
@@ -292,8 +293,13 @@ void CollocationRod::update_point_inputs() {
     const PointModel& at = model(j);
     const auto i = 3 * static_cast<Eigen::Index>(j), strain = strain_track() + i;
     point.b = -own.weighing_mass() * forcing_.gravity;
-    point.u0 = at.C_bt.cwiseProduct(own.K_bt.cwiseProduct(own.u_rest));
+    point.u0 = at.C_bt.cwiseProduct(own.K_bt.cwiseProduct(own.u_rest + forcing_.heat.curvature));
     point.v0 = z;
+    if (forcing_.heat.stretch != 0) {
+      // C K of the stretch that heat adds
+      const double B = options_.damping ? own.B_se.z() : 0;
+      point.v0.z() += (1 - rates_.c_v * at.C_se.z() * B) * forcing_.heat.stretch;
+    }
     if (forcing_.relaxation > 0) point.b -= forcing_.relaxation * marked_[j];
     if (!rates_.dynamic()) continue;
     point.b += own.rhoA * (rates_.c_w * track_.x_h.segment<3>(i) + track_.v_h.segment<3>(i));

@@ -50,11 +50,12 @@ struct CollocationOptions {
   int degree = kDefaultDegree, elements = 4;  ///< elements: at least; all point loads are at knots
   bool extension = false, shear = false;      ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  bool line_loads = false;                     ///< whether there are loads spread along it
-  bool touches = false;                        ///< whether it may touch something
-  std::vector<double> stations;                ///< s of point loads
-  std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
-  std::vector<DiskSpec> disks;                 ///< whose s are stations, too
+  bool line_loads = false;          ///< whether anything is spread along it
+  std::vector<MagnetSpec> magnets;  ///< of what is spread along it; whose ends are stations
+  bool touches = false;             ///< whether it may touch something
+  std::vector<double> stations;     ///< s of point loads
+  std::vector<Tendon> tendons;      ///< whose breaks are stations, too
+  std::vector<DiskSpec> disks;      ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
@@ -106,6 +107,8 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
 
   RodField field() const override;
   RodEnergy energy() const override;
+  double magnetic_energy(const MagneticSources& field) const override;
+  ThermalEffort thermal_effort() const override;
   std::string row_name(int row) const override;
 
   TouchingRod* touching() override { return touch_.get(); }

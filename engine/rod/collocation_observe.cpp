@@ -95,7 +95,7 @@ RodSample CollocationRod::observe() const {
     point.velocity = track_.v.segment<3>(3 * static_cast<Eigen::Index>(points_.size() + k));
     point.curvature = at.u;
     point.shear_stretch = at.R.transpose() * at.y_s.segment<3>(kP);
-    point.rest_curvature = rest_curvature(nodes_[k].s);
+    point.rest_curvature = rest_curvature(nodes_[k].s) + forcing_.heat.curvature;
     sample.points.push_back(point);
   }
   return sample;
@@ -116,6 +116,9 @@ RodField CollocationRod::field() const {
       const Vec13 y = value(at);
       f.points.push_back({rotation_of(Vec4(y.head<4>())), derivative(at).segment<3>(kP),
                           y.segment<3>(kN), y.segment<3>(kM)});
+      if (fluid_.field())
+        f.magnetic.push_back(
+            fluid_.magnetic_stiffness(s + 0.5 * h, f.points.back().R, y.segment<3>(kP)));
       if (tendons_) describe_tendons(at, f);
     }
   }
@@ -126,6 +129,26 @@ RodField CollocationRod::field() const {
   return f;
 }
 
+double CollocationRod::magnetic_energy(const MagneticSources& sources) const {
+  if (options_.magnets.empty()) return 0;
+  const MagneticField field = view_of(sources);
+  double energy = 0;
+  for (std::size_t j = 0; j < points_.size(); ++j)
+    energy += weights_[j] * forcing_.length *
+              fluid_.magnetic_energy(j, points_[j].R, points_[j].p(), field);
+  return energy;
+}
+
+ThermalEffort CollocationRod::thermal_effort() const {
+  ThermalEffort effort;
+  const ThermalStrain& heat = forcing_.heat;
+  for (std::size_t j = 0; j < points_.size(); ++j)
+    effort.add(weights_[j] * forcing_.length, section(j),
+               points_[j].u - section(j).u_rest - heat.curvature,
+               points_[j].v.z() - 1 - heat.stretch, options_.extension);
+  return effort;
+}
+
 RodEnergy CollocationRod::energy() const {
   RodEnergy e;
   const auto n = static_cast<Eigen::Index>(points_.size());
@@ -133,7 +156,8 @@ RodEnergy CollocationRod::energy() const {
     Vec3 K_se = Vec3::Zero();
     if (options_.shear) K_se.head<2>() = own.K_se.head<2>();
     if (options_.extension) K_se.z() = own.K_se.z();
-    const Vec3 bent = u - own.u_rest, stretch = v - Vec3::UnitZ();
+    const Vec3 bent = u - own.u_rest - forcing_.heat.curvature,
+               stretch = v - Vec3(0, 0, 1 + forcing_.heat.stretch);
     return 0.5 * (bent.dot(own.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
   };
   for (std::size_t j = 0; j < points_.size(); ++j) {
@@ -157,6 +181,7 @@ RodEnergy CollocationRod::energy() const {
     const Vec3 v_t = track_.v.segment<3>(strain + 3 * n);
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
+  e.magnetic = magnetic_energy(forcing_.field);
   if (touch_) e.damping_power += touch_->friction_power();
   if (disks_) disks_->add_energy(track_, e);
   // per unit feed: the base section's traction works on the inflow, which brings strain energy and

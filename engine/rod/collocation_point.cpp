@@ -93,7 +93,7 @@ Vec13 evaluate_point(const PointModel& model, CollocationPoint& point, FluidSect
   if (fluid) {
     const RowMatrix R = point.R;
     evaluate_surroundings(model.c_v, model.c_w, load(point.y.data() + kP), load_matrix(R.data()),
-                          *fluid);
+                          model.field, *fluid);
     r.segment<3>(kN) -= Eigen::Map<const Vec3>(fluid->force);
   }
   r.segment<3>(kM) = point.y_s.segment<3>(kM) + p_s.cross(point.n());  // (5)
@@ -162,6 +162,8 @@ void linearize_point(const PointModel& model, const CollocationPoint& point, Mat
     by_y.block<3, 4>(kM, kQ) = -Eigen::Map<const RowMatrix>(point.spin.torque_phi) * G;
   if (fluid && fluid->loaded != 0)
     by_y.block<3, 4>(kM, kQ) -= Eigen::Map<const RowMatrix>(fluid->moment_phi) * G;
+  if (fluid && fluid->magnetic != 0 && model.field && model.field->count > 0)
+    by_y.block<3, 3>(kM, kP) -= Eigen::Map<const RowMatrix>(fluid->moment_p);
 }
 
 }  // namespace cprsim

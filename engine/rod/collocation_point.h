@@ -7,18 +7,19 @@
 //   p_s = R v,  v = v0 + C_se R^T n              (3)   shear and stretch law
 //   n_s = k p + b + g                            (4)
 //   m_s = -p_s × n + t(R)                        (5)
-// where g is a fluid's force (engine/section/fluid.h); loads along the rod stand in (4), (5) as
-// engine/section/line_load.h says. With tendons n and m are those of rod and
-// tendons together; in (2), (3) the rod's own part is less Lambda_m(u, v), Lambda_n(u, v) of
-// engine/section/tendon_law.h, there with v = R^T p_s. No row divides by a stiffness; a rigid mode
-// is a zero of C_bt, C_se. Everything but (1) is unchanged by q -> a q, and a constant left factor
-// of q turns the frame: rows (2)-(5) turn with it. Source: Weeger, Yeung, Dunn, CMAME 316 (2017)
-// 100-122, whose mixed rows these are; that (2), (3) are as many as (4), (5) is explained in
-// engine/rod/collocation.h.
+// where g is a fluid's force (engine/section/fluid.h); loads along the rod and magnetic ones
+// stand in (4), (5) as engine/section/line_load.h and magnetic_load.h say. With tendons n and m are
+// those of rod and tendons together; in (2), (3) the rod's own part is less Lambda_m(u, v),
+// Lambda_n(u, v) of engine/section/tendon_law.h, there with v = R^T p_s. No row divides by a
+// stiffness; a rigid mode is a zero of C_bt, C_se. Everything but (1) is unchanged by q -> a q, and
+// a constant left factor of q turns the frame: rows (2)-(5) turn with it. Source: Weeger, Yeung,
+// Dunn, CMAME 316 (2017) 100-122, whose mixed rows these are; that (2), (3) are as many as (4), (5)
+// is explained in engine/rod/collocation.h.
 #pragma once
 
 #include "engine/math/types.h"
 #include "engine/section/fluid_section.h"
+#include "engine/section/magnetic_field.h"
 #include "engine/section/tendon_section.h"
 
 namespace cprsim {
@@ -38,6 +39,7 @@ struct PointModel {
   double rhoJ[3] = {};      ///< section inertia, kg m
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;
+  const MagneticField* field = nullptr;  ///< around it, if it is magnetised
 };
 
 /// Rotary inertia at a point (engine/section/rotary.h); rotations row-major.

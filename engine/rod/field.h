@@ -35,6 +35,7 @@ struct RodField {
   Vec3 K_bt = Vec3::Zero();        ///< bending, bending, torsion, N m²
   Vec3 K_se = Vec3::Zero();        ///< shear, shear, extension, N; 0 where the strain is not free
   std::vector<Mat6> tendons;       ///< stiffness (u, v) of tendons at the points, section axes
+  std::vector<Mat6> magnetic;      ///< stiffness (phi, d) of a magnetic field, world axes, N
   std::vector<MatX> locked;        ///< 6 × n there: stretch of tendons of given length by (u, v)
   double rhoA = 0;
   double added_mass = 0;     ///< of a fluid, across the tangent, kg/m

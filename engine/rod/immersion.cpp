@@ -4,7 +4,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/so3.h"
+#include "engine/section/magnetic_load.h"
+
 namespace cprsim {
+
+MagneticField view_of(const MagneticSources& sources) {
+  MagneticField field;
+  Eigen::Map<Vec3>(field.uniform) = sources.uniform;
+  field.dipoles = sources.dipoles.data();
+  field.count = static_cast<int>(sources.dipoles.size());
+  return field;
+}
+
+void Immersion::place(std::vector<double> inside, const std::vector<MagnetSpec>& magnets) {
+  inside_ = std::move(inside);
+  magnets_ = magnets;
+  for (std::size_t j = 0; j < places_.size(); ++j) {
+    const Vec3 m = magnetization(inside_[j]);
+    Eigen::Map<Vec3>(places_[j].magnetization) = m;
+    places_[j].magnetic = m.isZero(0) ? 0 : 1;
+  }
+}
+
+Vec3 Immersion::magnetization(double inside) const {
+  Vec3 sum = Vec3::Zero();
+  for (const MagnetSpec& magnet : magnets_)
+    if (inside >= magnet.from && inside <= magnet.to) sum += magnet.moment;
+  return sum;
+}
 
 void Immersion::prepare(const SectionProperties& section, const std::vector<SectionProperties>& own,
                         const StageRates& rates, const RodForcing& forcing,
@@ -13,7 +41,8 @@ void Immersion::prepare(const SectionProperties& section, const std::vector<Sect
   rates_ = rates;
   wind_ = forcing.wind;
   acts_ = rates.dynamic() || !wind_.isZero(0);
-  loaded_ = !inside_.empty() && !forcing.lines.empty();
+  take_field(forcing.field);
+  loaded_ = in_field_ || (!inside_.empty() && !forcing.lines.empty());
   if (loaded_) {
     acts_ = true;
     take_loads(forcing.lines);
@@ -49,6 +78,41 @@ void Immersion::take_loads(const std::vector<LineLoad>& lines) {
       (line.follower ? own_moment : dead_moment) += line.torque;
     }
   }
+}
+
+void Immersion::take_field(const MagneticSources& field) {
+  in_field_ = !magnets_.empty() && !field.none();
+  if (!in_field_) return;
+  dipoles_ = field.dipoles;
+  field_ = view_of(field);
+  field_.dipoles = dipoles_.data();
+}
+
+double Immersion::magnetic_energy(std::size_t place, const Mat3& R, const Vec3& p,
+                                  const MagneticField& field) const {
+  const FluidSection& at = places_[place];
+  if (at.magnetic == 0) return 0;
+  const Vec3 m = R * Eigen::Map<const Vec3>(at.magnetization);
+  const FieldAtPlace here = ::magnetic_field(field, load(p.data()), load(m.data()));
+  return -m.dot(Vec3(here.B.x, here.B.y, here.B.z));
+}
+
+// With exp(phi^) m = m + phi × m + phi × (phi × m) / 2: of -m·B(p) the second-order part is
+// (phi·phi m·B - phi·m phi·B) / 2 - (phi × m)·G dp - dp·H dp / 2.
+Mat6 Immersion::magnetic_stiffness(double inside, const Mat3& R, const Vec3& p) const {
+  Mat6 K = Mat6::Zero();
+  const Vec3 m = R * magnetization(inside);
+  if (!in_field_ || m.isZero(0)) return K;
+  const FieldAtPlace here = ::magnetic_field(field_, load(p.data()), load(m.data()));
+  using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const Mat3 G = Eigen::Map<const RowMatrix>(here.G.a), H = Eigen::Map<const RowMatrix>(here.H.a);
+  const Vec3 B(here.B.x, here.B.y, here.B.z);
+  const Mat3 mB = m * B.transpose();
+  K.topLeftCorner<3, 3>() = m.dot(B) * Mat3::Identity() - 0.5 * (mB + mB.transpose());
+  K.topRightCorner<3, 3>() = -cprsim::hat(m) * G;
+  K.bottomLeftCorner<3, 3>() = K.topRightCorner<3, 3>().transpose();
+  K.bottomRightCorner<3, 3>() = -H;
+  return K;
 }
 
 double Immersion::stiffness() const {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies around a rod, for every method: a fluid's force and loads that are spread along it, at
-// the places where the rod's balance holds, in the order of its track of positions
-// (engine/section/fluid.h, engine/section/line_load.h).
+// What lies around a rod, for every method: a fluid's force, loads that are spread along it, what a
+// magnetic field does to it, at the places where the rod's balance holds, in the order of its track
+// of positions (engine/section/fluid.h, engine/section/line_load.h,
+// engine/section/magnetic_load.h).
 #pragma once
 
 #include <vector>
 
+#include "engine/model/rod_spec.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/fluid_section.h"
 #include "engine/section/section.h"
@@ -17,9 +19,14 @@ class Immersion {
   /// @param count places, one after the other at the front of the track; 0: nothing around it.
   explicit Immersion(std::size_t count) : places_(count) {}
 
-  /// Where the places are, for loads along the rod; a fraction of the length in the interior of the
-  /// piece of the grid to which a place belongs.
-  void place(std::vector<double> inside) { inside_ = std::move(inside); }
+  Immersion(const Immersion&) = delete;
+  Immersion& operator=(const Immersion&) = delete;
+  Immersion(Immersion&&) = default;
+  Immersion& operator=(Immersion&&) = default;
+
+  /// Where the places are, for loads and magnetic moments along the rod; a fraction of the length
+  /// in the interior of the piece of the grid to which a place belongs.
+  void place(std::vector<double> inside, const std::vector<MagnetSpec>& magnets);
 
   /// Inputs of a solve.
   /// @param own of each place, or empty: all are like `section`.
@@ -30,7 +37,13 @@ class Immersion {
   /// loads along the rod.
   bool acts() const { return acts_; }
 
+  /// Whether there are moments per length, too.
   bool loaded() const { return loaded_; }
+
+  /// Null where no field acts on this rod.
+  const MagneticField* field() const { return in_field_ ? &field_ : nullptr; }
+
+  bool field_varies() const { return in_field_ && field_.count > 0; }
 
   FluidSection* at(std::size_t place) { return &places_[place]; }
 
@@ -45,16 +58,34 @@ class Immersion {
   void add_power(std::size_t place, const Vec3& axis, double weight, const Track& positions,
                  RodEnergy& energy) const;
 
+  /// Energy per length of a place of the rod in a field, J/m.
+  double magnetic_energy(std::size_t place, const Mat3& R, const Vec3& p,
+                         const MagneticField& field) const;
+
+  /// Second derivative of this energy by (phi, dp), world axes, anywhere on the rod: `inside` as
+  /// for place(). Of the field of the present solve.
+  Mat6 magnetic_stiffness(double inside, const Mat3& R, const Vec3& p) const;
+
   void visit(Archive& archive) { archive.doubles(places_); }
 
  private:
   void take_loads(const std::vector<LineLoad>& lines);
+  void take_field(const MagneticSources& field);
+  Vec3 magnetization(double inside) const;
 
   std::vector<FluidSection> places_;
   std::vector<double> inside_;
   Vec3 wind_ = Vec3::Zero();
   StageRates rates_;
   bool acts_ = false, loaded_ = false;
+
+  std::vector<MagnetSpec> magnets_;
+  std::vector<MagneticDipole> dipoles_;
+  MagneticField field_;  ///< its dipoles are those above
+  bool in_field_ = false;
 };
+
+/// Of sources, which must outlive it.
+MagneticField view_of(const MagneticSources& sources);
 
 }  // namespace cprsim

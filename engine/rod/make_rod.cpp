@@ -14,6 +14,7 @@ namespace cprsim {
 namespace {
 
 ShootingOptions shooting_options(const RodPlan& plan) {
+  const RodSpec& spec = *plan.spec;
   ShootingOptions o;
   o.integrator = plan.solver->integrator.value_or(kDefaultIntegrator);
   o.cells = shooting_cells(plan);
@@ -23,9 +24,10 @@ ShootingOptions shooting_options(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.line_loads = plan.line_loads;
+  if (plan.magnetic) o.magnets = spec.magnets;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
-  o.disks = plan.spec->disks;
+  o.disks = spec.disks;
   o.along = plan.along;
   return o;
 }
@@ -54,8 +56,8 @@ std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   if (plan.plane) {
     if (plan.line_loads)
-      throw std::invalid_argument("shooting in a plane knows no load along rod '" + spec.name +
-                                  "'");
+      throw std::invalid_argument("shooting in a plane knows nothing spread along rod '" +
+                                  spec.name + "'");
     return std::make_unique<PlanarRod>(spec.name, hold_of(plan, spec.base, plan.X_WBase),
                                        hold_of(plan, spec.tip, plan.X_WTip), *plan.plane,
                                        plan.X_WBase, spin_frame(plan), plan.section, plan.length,
@@ -78,10 +80,11 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.line_loads = plan.line_loads;
+  if (plan.magnetic) o.magnets = spec.magnets;
   o.touches = plan.touches;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
-  o.disks = plan.spec->disks;
+  o.disks = spec.disks;
   o.along = plan.along;
   if (!plan.plane)
     return std::make_unique<StrainRod>(spec.name, EndCondition(spec.base), EndCondition(spec.tip),
@@ -103,10 +106,11 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.damping = plan.damping;
   o.drag = plan.drag;
   o.line_loads = plan.line_loads;
+  if (plan.magnetic) o.magnets = spec.magnets;
   o.touches = plan.touches;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
-  o.disks = plan.spec->disks;
+  o.disks = spec.disks;
   o.along = plan.along;
   if (!plan.plane)
     return std::make_unique<CollocationRod>(spec.name, EndCondition(spec.base),

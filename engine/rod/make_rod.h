@@ -27,7 +27,8 @@ struct RodPlan {
   double length = 0;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  bool line_loads = false;       ///< whether there are loads spread along it
+  bool line_loads = false;       ///< whether anything is spread along it: loads, magnets
+  bool magnetic = false;         ///< whether the rod's magnets count
   bool touches = false;          ///< whether it may touch something
   std::vector<double> stations;  ///< s / L of point loads, then of breaks: tendons, lines, disks
   std::vector<Tendon> tendons;

@@ -184,6 +184,11 @@ void PlanarRod::update_stage_inputs() {
         }
       }
     }
+    if (forcing_.heat.stretch != 0) {
+      // C K of the stretch that heat adds
+      const double B = options_.damping ? B_v_.x() : 0;
+      stage.v0[0] += (1 - rates_.c_v * model_.C_v[0] * B) * forcing_.heat.stretch;
+    }
     if (forcing_.relaxation > 0) b -= forcing_.relaxation * marked_[j];
     stage.b[0] = b.x();
     stage.b[1] = b.y();

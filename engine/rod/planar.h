@@ -58,6 +58,7 @@ class PlanarRod final : public RodModel {
   RodSample observe() const override;
   RodField field() const override;
   RodEnergy energy() const override;
+  ThermalEffort thermal_effort() const override;
   std::string row_name(int row) const override;
 
   RodResolution resolution() const override {

@@ -254,14 +254,26 @@ RodSample PlanarRod::observe() const {
   return sample;
 }
 
+ThermalEffort PlanarRod::thermal_effort() const {
+  ThermalEffort effort;
+  const auto S = static_cast<std::size_t>(table_->stages);
+  for (std::size_t j = 0; options_.extension && j < stages_.size(); ++j) {
+    const double w = (grid_[j / S + 1] - grid_[j / S]) * forcing_.length * table_->b[j % S];
+    effort.first[3] -= w * K_v_.x() * (stages_[j].v[0] - 1 - forcing_.heat.stretch);
+    effort.second[3] += w * K_v_.x();
+  }
+  return effort;
+}
+
 RodEnergy PlanarRod::energy() const {
   RodEnergy e;
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto n = static_cast<Eigen::Index>(stages_.size());
   const double EA = options_.extension ? K_v_.x() : 0, GA = options_.shear ? K_v_.y() : 0;
   const auto density = [&](const Vec3& strain) {
-    return 0.5 * (K_b_ * strain[0] * strain[0] + EA * (strain[1] - 1) * (strain[1] - 1) +
-                  GA * strain[2] * strain[2]);
+    const double stretched = strain[1] - 1 - forcing_.heat.stretch;
+    return 0.5 *
+           (K_b_ * strain[0] * strain[0] + EA * stretched * stretched + GA * strain[2] * strain[2]);
   };
   const Vec2 weight = plane_.leftCols<2>().transpose() * (section_.rhoA * forcing_.gravity);
   const double at_height = height_ * section_.rhoA * plane_.col(2).dot(forcing_.gravity);

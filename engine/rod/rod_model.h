@@ -24,6 +24,8 @@
 #include "engine/rod/field.h"
 #include "engine/rod/rod_end.h"
 #include "engine/rod/shape.h"
+#include "engine/section/magnetic_sources.h"
+#include "engine/section/section.h"
 #include "engine/time/scheme.h"
 
 namespace cprsim {
@@ -60,6 +62,33 @@ struct TendonPull {
   bool displaces = false;
 };
 
+/// What heat adds to the strains of the rod without stress: to its curvature, section axes, 1/m;
+/// to its stretch.
+struct ThermalStrain {
+  Vec3 curvature = Vec3::Zero();
+  double stretch = 0;
+
+  bool none() const { return stretch == 0 && curvature.isZero(0); }
+
+  Vec4 coordinates() const { return {curvature.x(), curvature.y(), curvature.z(), stretch}; }
+};
+
+/// First and second derivatives of a rod's elastic energy by ThermalStrain::coordinates(); the
+/// second is diagonal.
+struct ThermalEffort {
+  Vec4 first = Vec4::Zero(), second = Vec4::Zero();
+
+  /// A place that stands for the length `weight`. @param bent, stretched elastic strains there
+  void add(double weight, const SectionProperties& section, const Vec3& bent, double stretched,
+           bool extension) {
+    second.head<3>() += weight * section.K_bt;
+    first.head<3>() -= weight * section.K_bt.cwiseProduct(bent);
+    if (!extension) return;
+    second[3] += weight * section.K_se.z();
+    first[3] -= weight * section.K_se.z() * stretched;
+  }
+};
+
 /// What acts on the rod during one solve.
 struct RodForcing {
   double length = 0;
@@ -68,6 +97,8 @@ struct RodForcing {
   std::vector<PointLoad> loads;     ///< in the order and at the s given at construction
   std::vector<LineLoad> lines;      ///< read by a rod that was made for some
   std::vector<TendonPull> tendons;  ///< in the order given at construction
+  MagneticSources field;            ///< read by a rod that is magnetised
+  ThermalStrain heat;
   double relaxation = 0;  ///< N s/m² over the pseudo time step: drag towards the marked positions
   double axial_softness =
       0;  ///< extra axial compliance in units of L²/EI: see Equations::set_softness
@@ -82,7 +113,7 @@ struct RodResidual {
 };
 
 struct RodEnergy {
-  double kinetic = 0, elastic = 0, gravity = 0;
+  double kinetic = 0, elastic = 0, gravity = 0, magnetic = 0;
   double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping, drag and friction
   double fluid_power = 0;    ///< W, brought in by a fluid's current and its inertia
   double feed_power =
@@ -169,6 +200,12 @@ class RodModel {
   /// The equilibrium at the last evaluate(), for stability and modes.
   virtual RodField field() const = 0;
   virtual RodEnergy energy() const = 0;
+
+  /// What the rod's energy would be in this field, J.
+  virtual double magnetic_energy(const MagneticSources&) const { return 0; }
+
+  virtual ThermalEffort thermal_effort() const { return {}; }
+
   virtual std::string row_name(int row) const = 0;
 
   /// The side that touches obstacles; null where the discretisation has none.

@@ -57,7 +57,7 @@ ShootingRod::ShootingRod(std::string name, const RodEnd& base, const RodEnd& tip
       const std::size_t cell = j / static_cast<std::size_t>(table_->stages);
       inside.push_back(0.5 * (grid_[cell] + grid_[cell + 1]));
     }
-    fluid_.place(std::move(inside));
+    fluid_.place(std::move(inside), options_.magnets);
   }
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
@@ -154,6 +154,7 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   model_.body_rates = rates.body_rates;
   fluid_.prepare(section_, sections_, rates, forcing_, track_);
   model_.loaded = fluid_.loaded();
+  model_.field = fluid_.field();
   const bool stretches = extensible_ || forcing.axial_softness > 0;
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
@@ -190,7 +191,7 @@ void ShootingRod::update_stage_inputs() {
     const SectionProperties& own = section(j);
     const CellSection& at = coefficients_at(j);
     const Vec3 C_bt = Eigen::Map<const Vec3>(at.C_bt), C_se = Eigen::Map<const Vec3>(at.C_se);
-    const Vec3 K_rest = own.K_bt.cwiseProduct(own.u_rest);
+    const Vec3 K_rest = own.K_bt.cwiseProduct(own.u_rest + forcing_.heat.curvature);
     const auto i = 3 * static_cast<Eigen::Index>(j);
     Vec3 b = -own.weighing_mass() * forcing_.gravity;
     Vec3 u0 = C_bt.cwiseProduct(K_rest), v0(0, 0, 1);
@@ -208,6 +209,11 @@ void ShootingRod::update_stage_inputs() {
         Eigen::Map<Vec3>(stage.theta_h) = rotation_track_.x_h.segment<3>(i);
         Eigen::Map<Vec3>(stage.omega_h) = rotation_track_.v_h.segment<3>(i);
       }
+    }
+    if (forcing_.heat.stretch != 0) {
+      // C K of the stretch that heat adds
+      const double B = options_.damping ? own.B_se.z() : 0;
+      v0.z() += (1 - rates_.c_v * C_se.z() * B) * forcing_.heat.stretch;
     }
     if (forcing_.relaxation > 0) b -= forcing_.relaxation * marked_[j];
     Eigen::Map<Vec3>(stage.b) = b;

@@ -39,10 +39,11 @@ struct ShootingOptions {
   int cells = 10;
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
-  bool line_loads = false;                     ///< whether there are loads spread along it
-  std::vector<double> stations;                ///< s of point loads: grid nodes are placed there
-  std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
-  std::vector<DiskSpec> disks;                 ///< whose s are stations, too
+  bool line_loads = false;          ///< whether anything is spread along it
+  std::vector<MagnetSpec> magnets;  ///< of what is spread along it; whose ends are stations
+  std::vector<double> stations;     ///< s of point loads: grid nodes are placed there
+  std::vector<Tendon> tendons;      ///< whose breaks are stations, too
+  std::vector<DiskSpec> disks;      ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
@@ -96,6 +97,8 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   RodField field() const override;
   RodEnergy energy() const override;
+  double magnetic_energy(const MagneticSources& field) const override;
+  ThermalEffort thermal_effort() const override;
   std::string row_name(int row) const override;
 
   RodResolution resolution() const override {
@@ -171,6 +174,9 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   double cell_length(std::size_t cell) const {
     return (grid_[cell + 1] - grid_[cell]) * forcing_.length;
   }
+
+  /// Length that a stage stands for, m.
+  double weight_of(std::size_t stage) const;
 
   /// What of the model is the cell's.
   void enter_cell(std::size_t cell) {

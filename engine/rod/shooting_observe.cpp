@@ -309,15 +309,40 @@ RodSample ShootingRod::observe() const {
       sides += 1;
     }
     point.curvature = u / sides;
-    point.rest_curvature = rest_curvature(grid_[k]);
+    point.rest_curvature = rest_curvature(grid_[k]) + forcing_.heat.curvature;
     point.shear_stretch = v / sides;
   }
   return sample;
 }
 
+double ShootingRod::weight_of(std::size_t stage) const {
+  const std::size_t S = static_cast<std::size_t>(table_->stages), cell = stage / S;
+  return (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[stage % S];
+}
+
+double ShootingRod::magnetic_energy(const MagneticSources& sources) const {
+  if (options_.magnets.empty()) return 0;
+  const MagneticField field = view_of(sources);
+  double energy = 0;
+  for (std::size_t j = 0; j < stages_.size(); ++j)
+    energy += weight_of(j) * fluid_.magnetic_energy(j, Eigen::Map<const RowMatrix>(stages_[j].R),
+                                                    vec(stages_[j].p), field);
+  return energy;
+}
+
+ThermalEffort ShootingRod::thermal_effort() const {
+  ThermalEffort effort;
+  const ThermalStrain& heat = forcing_.heat;
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const SectionProperties& own = section(j);
+    const Vec3 bent = vec(stages_[j].u) - own.u_rest - heat.curvature;
+    effort.add(weight_of(j), own, bent, stages_[j].v[2] - 1 - heat.stretch, options_.extension);
+  }
+  return effort;
+}
+
 RodEnergy ShootingRod::energy() const {
   RodEnergy e;
-  const auto S = static_cast<std::size_t>(table_->stages);
   const auto n = static_cast<Eigen::Index>(stages_.size());
   const Eigen::Index strains = 3 * (n + static_cast<Eigen::Index>(nodes_.size()));
   const auto free_stiffness = [&](const SectionProperties& own) {
@@ -326,15 +351,15 @@ RodEnergy ShootingRod::energy() const {
     if (options_.extension) K_se.z() = own.K_se.z();
     return K_se;
   };
-  const Vec3 z(0, 0, 1);
+  const Vec3 z(0, 0, 1 + forcing_.heat.stretch);
   for (std::size_t j = 0; j < stages_.size(); ++j) {
-    const std::size_t cell = j / S;
-    const double weight = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
+    const double weight = weight_of(j);
     const CellStage& stage = stages_[j];
     const SectionProperties& own = section(j);
     const Vec3 K_se = free_stiffness(own);
     const auto i = 3 * static_cast<Eigen::Index>(j);
-    const Vec3 bent = vec(stage.u) - own.u_rest, stretch = vec(stage.v) - z;
+    const Vec3 bent = vec(stage.u) - own.u_rest - forcing_.heat.curvature,
+               stretch = vec(stage.v) - z;
     e.kinetic += weight * 0.5 * own.rhoA * track_.v.segment<3>(i).squaredNorm();
     if (options_.rotary_inertia)
       e.kinetic += weight * 0.5 * vec(stage.omega).dot(own.rhoJ.cwiseProduct(vec(stage.omega)));
@@ -350,6 +375,7 @@ RodEnergy ShootingRod::energy() const {
     const Vec3 v_t = track_.v.segment<3>(strains + 3 * n + i);
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
+  e.magnetic = magnetic_energy(forcing_.field);
   if (disks_) disks_->add_energy(track_, e);
   if (touch_ && touch_->friction && rates_.dynamic())
     for (std::size_t i = 0; i < std::min(touch_->rows.size(), touch_->contacts.size()); ++i)
@@ -361,7 +387,7 @@ RodEnergy ShootingRod::energy() const {
   const Vec3 v = along_cell(stages_.data(), *table_, &CellStage::v, 0);
   const Vec3 n_S = rotation_of(base).transpose() * force_of(base),
              m_S = rotation_of(base).transpose() * moment_of(base);
-  const Vec3 bent = u - section_.u_rest;
+  const Vec3 bent = u - section_.u_rest - forcing_.heat.curvature;
   const double density = 0.5 * (bent.dot(section_.K_bt.cwiseProduct(bent)) +
                                 (v - z).dot(free_stiffness(section_).cwiseProduct(v - z)));
   e.feed_power = density - n_S.dot(v) - m_S.dot(u) -

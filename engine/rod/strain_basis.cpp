@@ -64,7 +64,7 @@ StrainRod::StrainRod(std::string name, const EndCondition& base, const EndCondit
       const std::size_t e = j / static_cast<std::size_t>(rule_.points());
       inside.push_back(0.5 * (grid_[e] + grid_[e + 1]));
     }
-    fluid_.place(std::move(inside));
+    fluid_.place(std::move(inside), options_.magnets);
   }
   if (options_.along) list_sections();
   if (!options_.tendons.empty()) place_tendons();
@@ -106,6 +106,10 @@ void StrainRod::set_unloaded(const Pose& X_WBase) {
 
 void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   rates_ = rates;
+  for (MatX& q : q_) {
+    add_thermal_strain(1, forcing_.heat, q);
+    add_thermal_strain(-1, forcing.heat, q);
+  }
   forcing_ = forcing;
   if (tendons_) tendons_->set(forcing.tendons);
   assert(forcing_.loads.size() == load_at_.size());
@@ -168,6 +172,8 @@ void StrainRod::update_point_inputs() {
     history += q.size();
     for (std::size_t a = 0; a < modes_.size(); ++a) {
       auto row = q.row(static_cast<Eigen::Index>(a));
+      // the histories are those of the whole strain
+      row[0] += rates_.c_v * thermal_strain(modes_[a], forcing_.heat);
       if (sections_.empty())
         row *= compliance(modes_[a]) * modes_[a].damping;
       else
@@ -192,7 +198,7 @@ void StrainRod::apply_load(std::size_t node, NodeState& state) const {
 }
 
 Vec3 StrainRod::strain(std::size_t element, const Eigen::Ref<const VecX>& phi, bool turns) const {
-  Vec3 sum = Vec3::UnitZ();
+  Vec3 sum(0, 0, 1 + forcing_.heat.stretch);
   if (turns) sum = rest_curvature(element, phi);
   for (std::size_t a : free_modes_)
     if (modes_[a].turns == turns)
@@ -236,7 +242,7 @@ Vec3 StrainRod::fluid_force(std::size_t point) {
   const StrainPoint& at = points_[point];
   const RowMatrix R = at.R;
   evaluate_surroundings(rates_.c_v, rates_.c_w, load(at.p.data()), load_matrix(R.data()),
-                        *fluid_.at(point));
+                        fluid_.field(), *fluid_.at(point));
   return Eigen::Map<const Vec3>(fluid_.at(point)->force);
 }
 

@@ -48,11 +48,12 @@ struct StrainOptions {
   int elements = 1;  ///< at least; point loads cut further
   bool extension = false, shear = false;
   bool rotary_inertia = false, damping = false, drag = false;
-  bool line_loads = false;                     ///< whether there are loads spread along it
-  bool touches = false;                        ///< whether it may touch something: at its borders
-  std::vector<double> stations;                ///< s / L of point loads
-  std::vector<Tendon> tendons;                 ///< whose breaks are stations, too
-  std::vector<DiskSpec> disks;                 ///< whose s are stations, too
+  bool line_loads = false;          ///< whether anything is spread along it
+  std::vector<MagnetSpec> magnets;  ///< of what is spread along it; whose ends are stations
+  bool touches = false;             ///< whether it may touch something: at its borders
+  std::vector<double> stations;     ///< s / L of point loads
+  std::vector<Tendon> tendons;      ///< whose breaks are stations, too
+  std::vector<DiskSpec> disks;      ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
 };
 
@@ -115,6 +116,8 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
 
   RodField field() const override;
   RodEnergy energy() const override;
+  double magnetic_energy(const MagneticSources& field) const override;
+  ThermalEffort thermal_effort() const override;
   std::string row_name(int row) const override;
 
   TouchingRod* touching() override { return touch_.get(); }
@@ -162,18 +165,28 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
   double damping(const StrainMode& mode, std::size_t point) const;
 
   Vec3 rest_curvature(std::size_t element, const Eigen::Ref<const VecX>& phi) const {
-    return rest_.empty() ? section_.u_rest : Vec3(rest_[element] * phi);
+    return forcing_.heat.curvature + (rest_.empty() ? section_.u_rest : Vec3(rest_[element] * phi));
   }
 
   bool bent_at_rest() const {
     return options_.along ? options_.along->bent_at_rest() : !section_.u_rest.isZero();
   }
 
+  /// Strain along a mode that heat adds.
+  static double thermal_strain(const StrainMode& mode, const ThermalStrain& heat) {
+    return mode.turns ? mode.axis.dot(heat.curvature) : mode.axis.z() * heat.stretch;
+  }
+
+  void add_thermal_strain(double sign, const ThermalStrain& heat, Eigen::Ref<MatX> q) const;
+
   double unit(const StrainMode& mode) const { return mode.turns ? 1 / scale_.length : 1; }
 
   Vec3 strain(std::size_t element, const Eigen::Ref<const VecX>& phi, bool turns) const;
 
   std::size_t elements() const { return grid_.size() - 1; }
+
+  /// Length that a point stands for, m.
+  double weight_of(std::size_t point) const;
 
   double length_of(std::size_t element) const {
     return (grid_[element + 1] - grid_[element]) * forcing_.length;

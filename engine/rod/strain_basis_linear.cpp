@@ -121,6 +121,8 @@ void StrainRod::vary_element(std::size_t e, Rows12& y) {
     if (fluid_.loaded())
       m_s[i].noalias() +=
           Eigen::Map<const RowMatrix>(fluid_.at(first + i)->moment_phi) * point_turns_[first + i];
+    if (fluid_.field_varies())
+      m_s[i].noalias() += Eigen::Map<const RowMatrix>(fluid_.at(first + i)->moment_p) * p[i];
     if (turning_)
       m_s[i].noalias() +=
           Eigen::Map<const RowMatrix>(rotary_[first + i].torque_phi) * point_turns_[first + i];

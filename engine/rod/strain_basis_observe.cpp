@@ -79,8 +79,14 @@ void StrainRod::fill_tracks() {
     x = std::copy_n(point.p.data(), 3, x);
   for (const NodeState& node : nodes_)
     x = std::copy_n(node.p, 3, x);
-  for (std::size_t e = 0; options_.damping && e < elements(); ++e)
-    x = std::copy_n(q_[e].data(), q_[e].size(), x);
+  for (std::size_t e = 0; options_.damping && e < elements(); ++e) {
+    // what damps is the rate of the whole strain, heat's part included
+    for (std::size_t a = 0; a < modes_.size(); ++a)
+      x[a] = thermal_strain(modes_[a], forcing_.heat);
+    std::fill_n(x + modes_.size(), q_[e].size() - q_[e].rows(), 0.0);
+    Eigen::Map<VecX>(x, q_[e].size()) += Eigen::Map<const VecX>(q_[e].data(), q_[e].size());
+    x += q_[e].size();
+  }
   for (std::size_t j = 0; j < rotary_.size(); ++j) {
     std::copy_n(rotary_[j].theta, 3, rotation_track_.x.data() + 3 * j);
     std::copy_n(rotary_[j].omega, 3, rotation_track_.v.data() + 3 * j);
@@ -145,13 +151,26 @@ void StrainRod::start_tracks_moving() {
     rotation_track_.set_start(VecX::Zero(rotation_track_.x.size()), VecX(rotation_track_.v));
 }
 
+// As solutions from other instants are looked at a strain is a whole one, heat's part included.
+void StrainRod::add_thermal_strain(double sign, const ThermalStrain& heat,
+                                   Eigen::Ref<MatX> q) const {
+  if (heat.none()) return;
+  for (std::size_t a = 0; a < modes_.size(); ++a)
+    if (modes_[a].listed)
+      q(static_cast<Eigen::Index>(a), 0) += sign * thermal_strain(modes_[a], heat);
+}
+
 RodModel::Unknowns StrainRod::unknowns() const {
   Unknowns u;
   u.starts = {start_};
   const Eigen::Index size = q_[0].size();
   u.values.resize(size * static_cast<Eigen::Index>(q_.size()));
-  for (std::size_t e = 0; e < elements(); ++e)
-    std::copy_n(q_[e].data(), size, u.values.data() + static_cast<Eigen::Index>(e) * size);
+  for (std::size_t e = 0; e < elements(); ++e) {
+    Eigen::Map<MatX> whole(u.values.data() + static_cast<Eigen::Index>(e) * size, q_[e].rows(),
+                           q_[e].cols());
+    whole = q_[e];
+    add_thermal_strain(1, forcing_.heat, whole);
+  }
   if (finds_tensions()) {
     u.values.conservativeResize(u.values.size() + tendons_->unknowns());
     u.values.tail(tendons_->unknowns()) = tendons_->values();
@@ -172,6 +191,8 @@ void StrainRod::set_unknowns(const Unknowns& u) {
   const Eigen::Index size = q_[0].size();
   for (std::size_t e = 0; e < elements(); ++e)
     std::copy_n(u.values.data() + static_cast<Eigen::Index>(e) * size, size, q_[e].data());
+  for (MatX& q : q_)
+    add_thermal_strain(-1, forcing_.heat, q);
   if (finds_tensions()) tendons_->set_values(u.values.tail(tendons_->unknowns()));
 }
 
@@ -288,6 +309,12 @@ RodField StrainRod::field() const {
         f.points.push_back(point);
         const double begin = grid_[e], width = grid_[e + 1] - begin, s = begin + width * x;
         if (options_.along) f.sections.push_back(options_.along->at(s, begin + 0.5 * width));
+        if (fluid_.field()) {
+          Vec3 p = Vec3::Zero();
+          for (Eigen::Index i = 0; i < G; ++i)
+            p += weights[i] * points_[first + static_cast<std::size_t>(i)].p;
+          f.magnetic.push_back(fluid_.magnetic_stiffness(begin + 0.5 * width, point.R, p));
+        }
         if (!tendons_) continue;
         const VecX phi = legendre(x, rule_.order);
         MatX held;
@@ -339,11 +366,36 @@ void StrainRod::add_varying_strain_energy(RodEnergy& energy) const {
   }
 }
 
+double StrainRod::weight_of(std::size_t point) const {
+  const auto G = static_cast<std::size_t>(rule_.points());
+  return length_of(point / G) * rule_.gauss.weights[static_cast<Eigen::Index>(point % G)];
+}
+
+double StrainRod::magnetic_energy(const MagneticSources& sources) const {
+  if (options_.magnets.empty()) return 0;
+  const MagneticField field = view_of(sources);
+  double energy = 0;
+  for (std::size_t j = 0; j < points_.size(); ++j)
+    energy += weight_of(j) * fluid_.magnetic_energy(j, points_[j].R, points_[j].p, field);
+  return energy;
+}
+
+ThermalEffort StrainRod::thermal_effort() const {
+  ThermalEffort effort;
+  for (std::size_t j = 0; j < points_.size(); ++j) {
+    const std::size_t e = j / static_cast<std::size_t>(rule_.points());
+    const auto i = static_cast<Eigen::Index>(j % static_cast<std::size_t>(rule_.points()));
+    const Vec3 bent = points_[j].u - rest_curvature(e, rule_.phi.col(i));
+    effort.add(weight_of(j), section(j), bent, points_[j].v.z() - 1 - forcing_.heat.stretch,
+               options_.extension);
+  }
+  return effort;
+}
+
 RodEnergy StrainRod::energy() const {
   RodEnergy energy;
   for (std::size_t j = 0; j < points_.size(); ++j) {
-    const auto G = static_cast<std::size_t>(rule_.points());
-    const double weight = length_of(j / G) * rule_.gauss.weights[static_cast<Eigen::Index>(j % G)];
+    const double weight = weight_of(j);
     energy.kinetic += weight * 0.5 * section(j).rhoA *
                       track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)).squaredNorm();
     energy.gravity -= weight * section(j).weighing_mass() * forcing_.gravity.dot(points_[j].p);
@@ -358,6 +410,7 @@ RodEnergy StrainRod::energy() const {
     add_strain_energy(energy);
   else
     add_varying_strain_energy(energy);
+  energy.magnetic = magnetic_energy(forcing_.field);
   if (touch_) energy.damping_power += touch_->friction_power();
   // what a unit feed brings in, see ShootingRod::energy
   const VecX phi = legendre(0, rule_.order);

@@ -26,6 +26,45 @@ double drag_number(const RodSpec& spec, const SectionProperties& s, const Scene&
   return number;
 }
 
+/// Largest size of a function of time during the run.
+double peak(const Profile& profile, double end) {
+  constexpr int kSamples = 1000;
+  std::vector<double> times = profile.breakpoints(end);
+  for (int k = 0; k <= kSamples; ++k)
+    times.push_back(end * k / kSamples);
+  double most = 0;
+  for (const double t : times)
+    for (const bool before : {false, true})
+      most = std::max(most, std::abs(profile.evaluate(t, before).value));
+  return most;
+}
+
+/// Torque over bending moment, M B L²/EI: a uniform field, or that of a dipole at the distance of
+/// the base.
+double magnetic_number(const RobotRod& rod, const Vec3& base, const Scene& scene, double EI) {
+  double M = 0, B = 0;
+  for (const MagnetSpec& magnet : rod.spec->magnets)
+    M += magnet.moment.norm() * (magnet.to - magnet.from);
+  for (const MagneticFieldSpec& field : scene.magnetic_fields) {
+    const double f = field.has_profile ? peak(field.profile, scene.simulation.duration) : 1;
+    const double r = (field.position - base).norm();
+    B += f * (field.dipole ? 2e-7 * field.moment.norm() / std::max(r * r * r, 1e-300)
+                           : field.uniform.norm());
+  }
+  return M * B * rod.length * rod.length / EI;
+}
+
+/// The largest of: relative elongation alpha T; turn alpha g L (rad); where both ends are held, the
+/// force that this takes over the bending force, alpha T EA L²/EI.
+double thermal_number(const RobotRod& rod, const Scene& scene, double EI) {
+  const TemperatureSpec& heat = *rod.spec->temperature;
+  const double f = heat.has_profile ? peak(heat.profile, scene.simulation.duration) : 1,
+               alpha = f * rod.spec->material->thermal_expansion, L = rod.length,
+               longer = std::abs(alpha * heat.rise), turn = std::abs(alpha) * heat.gradient.norm();
+  const bool held = rod.base_held && rod.tip_held;
+  return std::max({longer, turn * L, held ? longer * rod.section.K_se.z() * L * L / EI : 0});
+}
+
 /// Dunkerley: 1/omega² is the sum of those of the rod alone and of each disk on a rod without mass.
 double lowered_by_disks(double omega, const RodSpec& spec, double EI, double L) {
   double sum = 1 / (omega * omega);
@@ -34,7 +73,8 @@ double lowered_by_disks(double omega, const RodSpec& spec, double EI, double L) 
   return 1 / std::sqrt(sum);
 }
 
-RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan) {
+RodFacts rod_facts(const Robot& robot, const RobotRod& rod, const StepPlan& plan) {
+  const Scene& scene = *robot.scene;
   RodFacts f;
   const SectionProperties& s = rod.section;
   const double L = rod.length, EI = std::min(s.K_bt.x(), s.K_bt.y());
@@ -78,6 +118,10 @@ RodFacts rod_facts(const RobotRod& rod, const Scene& scene, const StepPlan& plan
   f.extension_number = s.K_se.z() > 0 ? EI / (s.K_se.z() * L * L) : 0;
   f.damping_ratio = omega * std::max(s.B_bt.x(), s.B_bt.y()) / (2 * EI);
   if (rod.spec->drag) f.drag_number = drag_number(*rod.spec, s, scene, L);
+  if (!rod.spec->magnets.empty())
+    f.magnetic_number = magnetic_number(rod, robot.pose_of(rod.base).p, scene, EI);
+  if (rod.spec->temperature && rod.spec->material)
+    f.thermal_number = thermal_number(rod, scene, EI);
   return f;
 }
 
@@ -92,7 +136,7 @@ ProblemFacts problem_facts(const Robot& robot, const Equations& equations, const
   facts.body_unknowns = equations.body_unknowns();
   facts.constraint_unknowns = equations.constraint_count();
   for (const RobotRod& rod : robot.rods)
-    facts.rods.push_back(rod_facts(rod, scene, plan));
+    facts.rods.push_back(rod_facts(robot, rod, plan));
   return facts;
 }
 

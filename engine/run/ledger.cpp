@@ -136,7 +136,7 @@ double contact_energy(const RobotRod& rod) {
 
 void EnergyLedger::sum_up() {
   EnergySample& e = sample_;
-  e.kinetic = e.elastic = e.gravity = 0;
+  e.kinetic = e.elastic = e.gravity = e.magnetic = 0;
   for (const RigidBody& body : robot_.bodies) {
     e.kinetic += body.kinetic_energy();
     e.gravity -= body.gravity_mass * robot_.gravity.dot(body.p + body.R * body.gravity_arm);
@@ -148,6 +148,7 @@ void EnergyLedger::sum_up() {
     e.kinetic += own.kinetic;
     e.elastic += own.elastic + contact_energy(rod);
     e.gravity += own.gravity;
+    e.magnetic += own.magnetic;
   }
   if (free_bodies_) {
     const double kinetic = free_bodies_->kinetic_energy(), gravity = free_bodies_->gravity_energy();
@@ -159,7 +160,7 @@ void EnergyLedger::sum_up() {
     free_energy_ = kinetic + gravity;
     free_energy_known_ = true;
   }
-  e.total = e.kinetic + e.elastic + e.gravity;
+  e.total = e.kinetic + e.elastic + e.gravity + e.magnetic;
   e.balance = e.total - start_ - e.work + e.dissipated;
 }
 
@@ -193,6 +194,56 @@ void EnergyLedger::begin_step(double t) {
   }
   friction_energy_before_ = friction_energy();
   tendons_before_ = tendons_now(t, false);
+  note_course(t);
+}
+
+std::vector<EnergyLedger::OnCourse> EnergyLedger::course_now(double t, bool before) const {
+  std::vector<OnCourse> now;
+  const Scene& scene = *robot_.scene;
+  for (const RobotRod& rod : robot_.rods) {
+    if (!rod.magnetic && !rod.heated) continue;
+    OnCourse& at = now.emplace_back();
+    if (rod.heated) {
+      const ThermalEffort effort = rod.model->thermal_effort();
+      at.strain = thermal_strain_at(*rod.spec, t, before).coordinates();
+      // what the last solve has seen may be of another instant
+      const Vec4 since = at.strain - rod.forcing.heat.coordinates();
+      at.effort = effort.first + effort.second.cwiseProduct(since);
+    }
+    for (const MagneticFieldSpec& field : scene.magnetic_fields) {
+      if (!rod.magnetic) break;
+      MagneticFieldSpec whole = field;
+      whole.has_profile = false;
+      at.strengths.push_back(field.has_profile ? field.profile.evaluate(t, before).value : 1);
+      at.energies.push_back(rod.model->magnetic_energy(sources_at(whole, t, before)));
+    }
+  }
+  return now;
+}
+
+/// Where a field or a temperature jumps, the energy that rods have in it jumps at rest.
+void EnergyLedger::note_course(double t) {
+  course_before_ = course_now(t, false);
+  jump_work_ = 0;
+  const std::vector<OnCourse> last = course_now(t, true);
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    const OnCourse& now = course_before_[i];
+    jump_work_ += 0.5 * (last[i].effort + now.effort).dot(now.strain - last[i].strain);
+    for (std::size_t k = 0; k < now.strengths.size(); ++k)
+      jump_work_ += now.energies[k] * (now.strengths[k] - last[i].strengths[k]);
+  }
+}
+
+double EnergyLedger::course_work(double t) const {
+  const std::vector<OnCourse> now = course_now(t, true);
+  double work = jump_work_;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const OnCourse &a = course_before_[i], &b = now[i];
+    work += 0.5 * (a.effort + b.effort).dot(b.strain - a.strain);
+    for (std::size_t k = 0; k < b.strengths.size(); ++k)
+      work += 0.5 * (a.energies[k] + b.energies[k]) * (b.strengths[k] - a.strengths[k]);
+  }
+  return work;
 }
 
 // A tension is what its drive says from t on, not what the last solve has seen.
@@ -253,7 +304,7 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work, 
     if (!a.moment.isZero() || !b.moment.isZero())
       sample_.work += 0.5 * (a.moment + b.moment).dot(log_so3(b.rotation * a.rotation.transpose()));
   }
-  sample_.work += drive_work + tendon_work(t);
+  sample_.work += drive_work + tendon_work(t) + course_work(t);
   sample_.dissipated += damping_loss;
   // what friction takes, less what its elastic range still holds
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where energy comes from and goes: kinetic, elastic and potential energy of everything, the work
 // of loads and tendons (trapezoidal in the displacement, which is exact for dead loads and constant
-// tensions) and of the other drives (their power, by the time scheme's own quadrature), and what
-// damping has taken out.
+// tensions), of magnetic fields and temperatures that change (trapezoidal in the change) and of the
+// other drives (their power, by the time scheme's own quadrature), and what damping has taken out.
 #pragma once
 
 #include <vector>
@@ -75,9 +75,21 @@ class EnergyLedger {
   std::vector<std::vector<TendonSample>> tendons_now(double t, bool before) const;
   double tendon_work(double t) const;
 
+  /// What a rod's energy depends on beside its state, and its derivatives by that.
+  struct OnCourse {
+    Vec4 strain = Vec4::Zero(), effort = Vec4::Zero();  ///< heat's part; by it
+    std::vector<double> strengths, energies;  ///< of magnetic fields: factors, energies at 1
+  };
+
+  std::vector<OnCourse> course_now(double t, bool before) const;
+  void note_course(double t);
+  double course_work(double t) const;
+
   std::vector<Vec3> friction_before_, q_before_;           ///< of joints
   std::vector<std::vector<TendonSample>> tendons_before_;  ///< of rods
   std::vector<Jump> jumps_;                                ///< of joint drives
+  std::vector<OnCourse> course_before_;                    ///< of rods
+  double jump_work_ = 0;                                   ///< where the step began
   double begun_ = 0;
   double friction_energy_before_ = 0;
   double start_ = 0;

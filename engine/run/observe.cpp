@@ -100,6 +100,7 @@ EnergySample energy_between(const EnergySample& a, const EnergySample& b, const 
   energy.kinetic = at(a.kinetic, b.kinetic);
   energy.elastic = at(a.elastic, b.elastic);
   energy.gravity = at(a.gravity, b.gravity);
+  energy.magnetic = at(a.magnetic, b.magnetic);
   energy.dissipated = at(a.dissipated, b.dissipated);
   energy.work = at(a.work, b.work);
   energy.total = at(a.total, b.total);
@@ -187,6 +188,8 @@ double value_of(const Channel& channel, const EnergySample& energy) {
       return energy.elastic;
     case Quantity::kEnergyGravity:
       return energy.gravity;
+    case Quantity::kEnergyMagnetic:
+      return energy.magnetic;
     case Quantity::kEnergyDissipated:
       return energy.dissipated;
     case Quantity::kEnergyWork:

@@ -65,7 +65,8 @@ struct RodFacts {
   int elements = 0, order = 0;  ///< pieces, and the order of the rule
   int segments = 0, unknowns = 0;
   double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
-  double drag_number = 0;  ///< of a fluid that the scene describes, listed or not
+  /// Of a fluid, a magnetic field, heat that the scene describes, listed or not.
+  double drag_number = 0, magnetic_number = 0, thermal_number = 0;
 };
 
 struct ProblemFacts {

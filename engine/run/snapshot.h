@@ -27,7 +27,7 @@ struct JointSample {
 /// J. work is what drives and loads have put in, dissipated what damping has taken out since t = 0;
 /// balance = total - total(0) - work + dissipated, which a perfect integration keeps at 0.
 struct EnergySample {
-  double kinetic = 0, elastic = 0, gravity = 0;
+  double kinetic = 0, elastic = 0, gravity = 0, magnetic = 0;
   double dissipated = 0, work = 0, total = 0, balance = 0;
 };
 
@@ -89,8 +89,8 @@ struct Snapshot {
 };
 
 inline void visit(EnergySample& e, Archive& archive) {
-  for (double* x :
-       {&e.kinetic, &e.elastic, &e.gravity, &e.dissipated, &e.work, &e.total, &e.balance})
+  for (double* x : {&e.kinetic, &e.elastic, &e.gravity, &e.magnetic, &e.dissipated, &e.work,
+                    &e.total, &e.balance})
     archive(*x);
 }
 

@@ -52,6 +52,10 @@ std::vector<double> break_times(const Scene& scene, double end) {
     take(drive.profile);
   for (const LoadSpec& load : scene.loads)
     if (load.has_profile) take(load.profile);
+  for (const MagneticFieldSpec& field : scene.magnetic_fields)
+    if (field.has_profile) take(field.profile);
+  for (const RodSpec& rod : scene.rods)
+    if (rod.temperature && rod.temperature->has_profile) take(rod.temperature->profile);
   std::sort(breaks.begin(), breaks.end());
   return breaks;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies around a section of a rod: a fluid (equations in engine/section/fluid.h) and loads that
-// are spread along the rod (engine/section/line_load.h).
+// What lies around a section of a rod: a fluid (equations in engine/section/fluid.h), loads that
+// are spread along the rod (engine/section/line_load.h), a magnetic field
+// (engine/section/magnetic_load.h).
 #pragma once
 
 namespace cprsim {
@@ -18,6 +19,10 @@ struct FluidSection {
   double dead_force[3], dead_moment[3], own_force[3], own_moment[3];
   double applied[3];                ///< their force, world axes; a part of -g
   double moment[3], moment_phi[9];  ///< what they add to m_s, and by the world rotation increment
+
+  double magnetic;          ///< 0 without a moment of its own
+  double magnetization[3];  ///< per length, section axes, A m
+  double moment_p[9];       ///< of moment, by position; only read in a field that varies
 };
 
 }  // namespace cprsim

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "engine/section/fluid.h"
+#include "engine/section/magnetic_load.h"
 
 namespace {  // NOLINT: as small_vector.h
 
@@ -20,11 +21,12 @@ inline void add_line_load(const M3& R, cprsim::FluidSection& f) {
   store_matrix(f.moment_phi, hat(bent));
 }
 
-/// All that lies around a section.
+/// All that lies around a section. @param field null without any
 inline void evaluate_surroundings(double c_v, double c_w, V3 p, const M3& R,
-                                  cprsim::FluidSection& f) {
+                                  const cprsim::MagneticField* field, cprsim::FluidSection& f) {
   evaluate_fluid(c_v, c_w, p, {R.a[2], R.a[5], R.a[8]}, f);
   if (f.loaded != 0) add_line_load(R, f);
+  if (field && f.magnetic != 0) add_magnetic_load(*field, p, R, f);
 }
 
 }  // namespace

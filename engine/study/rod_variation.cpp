@@ -128,6 +128,11 @@ RodVariation rod_variation(const RodField& field, bool rotary) {
             0.5 * w * by.transpose() * field.tendons[at] * by;
         out.held.middleCols(psi, layout.per_point) += w * field.locked[at].transpose() * by;
       }
+      if (!field.magnetic.empty()) {
+        MatX moved(6, active);
+        moved << phi[j], d;
+        K.noalias() += 0.5 * w * moved.transpose() * field.magnetic[at] * moved;
+      }
       const Mat3 outer = point.tau * point.n.transpose();
       const Mat3 B = 0.5 * (outer + outer.transpose()) - point.n.dot(point.tau) * Mat3::Identity();
       const auto row = 3 * static_cast<Eigen::Index>(j);

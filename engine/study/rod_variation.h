@@ -8,9 +8,10 @@
 //   order)
 // and twice the second-order part of energy (with the internal force as multiplier of a rigid v) is
 //   ∫ psi·R K_bt R^T psi - m·(phi × psi) + e·K_se e + n·(phi × (phi × tau)) - 2 n·(phi × d') ds (1)
-// Rates psi and e at the collocation points are the coordinates, phi and d follow by the table: the
-// same discrete rod that was solved. Source of (1): Simo & Vu-Quoc, CMAME 58 (1986), geometric
-// stiffness; here in exponential coordinates, in which it is symmetric.
+// In a magnetic field the second derivative of its energy by (phi, d) is added. Rates psi and e at
+// the collocation points are the coordinates, phi and d follow by the table: the same discrete rod
+// that was solved. Source of (1): Simo & Vu-Quoc, CMAME 58 (1986), geometric stiffness; here in
+// exponential coordinates, in which it is symmetric.
 #pragma once
 
 #include "engine/rod/field.h"

@@ -78,6 +78,20 @@ StaticStudy::StaticStudy(Scene scene, double at, const std::vector<ProbeWrench>&
     load.torque *= factor;
     load.has_profile = false;
   }
+  for (MagneticFieldSpec& field : scene_->magnetic_fields) {
+    if (!field.has_profile) continue;
+    const double factor = field.profile.evaluate(at, true).value;
+    field.uniform *= factor;
+    field.moment *= factor;
+    field.has_profile = false;
+  }
+  for (RodSpec& rod : scene_->rods) {
+    if (!rod.temperature || !rod.temperature->has_profile) continue;
+    const double factor = rod.temperature->profile.evaluate(at, true).value;
+    rod.temperature->rise *= factor;
+    rod.temperature->gradient *= factor;
+    rod.temperature->has_profile = false;
+  }
   first_probe_ = scene_->loads.size();
   for (const ProbeWrench& probe : probes) {
     LoadSpec load;

@@ -26,6 +26,8 @@ class PlanarCheck {
       check(scene_.rods[k]);
     for (const LoadSpec& load : scene_.loads)
       check(load);
+    for (const MagneticFieldSpec& field : scene_.magnetic_fields)
+      check(field);
     velocities();
   }
 
@@ -127,6 +129,12 @@ class PlanarCheck {
       complain(rod.place, 10,
                "rod '" + rod.name + "' has drag, which shooting in a plane does not know",
                "leave <planar> out, or take method=\"strain\" or \"collocation\"");
+    if (scene_.effects.has(Effect::kThermal) && rod.temperature && !rod.lacks("thermal") &&
+        !rod.temperature->gradient.isZero(0))
+      complain(rod.place, 10,
+               "rod '" + rod.name +
+                   "' is warmer on one side, which bends it at rest: known in space only");
+    if (scene_.effects.has(Effect::kMagnetic) && !rod.lacks("magnetic")) check_magnets(rod, method);
     const bool tip_held = rod.tip.joint != EndJoint::kFree;
     if (!end(rod, rod.base, "base") || (tip_held && !end(rod, rod.tip, "tip"))) return;
     const Pose base = in_world(rod.base.at), tip = tip_held ? in_world(rod.tip.at) : base;
@@ -151,6 +159,36 @@ class PlanarCheck {
                "turn the frames of its ends about the tangent");
   }
 
+  /// Section axes where the rod begins, up to a turn in the plane.
+  Mat3 axes_of(const RodSpec& rod) const {
+    const bool by_tip =
+        rod.tip.joint != EndJoint::kFree && holds_spin(rod.tip) && !holds_spin(rod.base);
+    return in_world(by_tip ? rod.tip.at : rod.base.at).R;
+  }
+
+  void check_magnets(const RodSpec& rod, Method method) {
+    if (rod.magnets.empty()) return;
+    if (method == Method::kAuto || method == Method::kShooting)
+      complain(rod.place, 10,
+               "rod '" + rod.name + "' is magnetised, which shooting in a plane does not know",
+               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
+    for (const MagnetSpec& magnet : rod.magnets)
+      if (leaves(axes_of(rod) * magnet.moment))
+        complain(rod.place, 10, "the magnetisation of rod '" + rod.name + "' leaves the plane");
+    const double height = in_world(rod.base.at).p.dot(normal_);
+    for (const MagneticFieldSpec& field : scene_.magnetic_fields)
+      if (field.dipole && std::abs(field.position.dot(normal_) - height) >
+                              kPlanarAngle * std::max(rod.length, 1e-9))
+        complain(field.place, 22,
+                 "the dipole is not in the plane of rod '" + rod.name + "', which it would leave");
+  }
+
+  void check(const MagneticFieldSpec& field) {
+    const Vec3& v = field.dipole ? field.moment : field.uniform;
+    if (scene_.effects.has(Effect::kMagnetic) && leaves(v))
+      complain(field.place, 22, "the magnetic field's " + words(v) + " leaves the plane");
+  }
+
   void check(const LoadSpec& load) {
     if (load.to) {
       const RodSpec& rod = scene_.rods[at(load.rod)];
@@ -162,12 +200,7 @@ class PlanarCheck {
     }
     Mat3 R = load.R_expressed;
     if (load.follower && load.rod < 0) R = in_world(load.at).R * R;
-    if (load.follower && load.rod >= 0) {
-      const RodSpec& rod = scene_.rods[at(load.rod)];
-      const bool by_tip =
-          rod.tip.joint != EndJoint::kFree && holds_spin(rod.tip) && !holds_spin(rod.base);
-      R = in_world(by_tip ? rod.tip.at : rod.base.at).R * R;
-    }
+    if (load.follower && load.rod >= 0) R = axes_of(scene_.rods[at(load.rod)]) * R;
     const Vec3 F = R * load.force, T = R * load.torque;
     if (leaves(F))
       complain(load.place, 11, "the force " + words(F) + " N leaves the plane");

@@ -74,15 +74,17 @@ std::vector<std::string> root_folders(const std::string& folder, const LoadOptio
 
 void read_world(Reading& reading, const Node& world) {
   read_settings(reading, world);
+  read_profiles(reading, world);
   read_bodies(reading, world);
   read_joints(reading, world);
   read_rods(reading, world);
   read_tendons(reading);
-  read_profiles(reading, world);
   read_actions(reading, world);
+  read_magnetic_fields(reading, world);
   read_targets(reading);
   read_views(reading, world);
   check_physics(reading);
+  check_fields(reading, world);
   check_tendons(reading);
   check_contact(reading);
   check_planar(reading, world);

@@ -11,26 +11,6 @@ namespace cprsim {
 
 namespace {
 
-// a named profile or the shapes inside; false if neither is given
-bool read_time_function(Reading& r, const Node& node, Profile& profile) {
-  const Attribute* name = node.attribute("profile");
-  profile = read_shapes(r, node);
-  if (!name) return !profile.terms.empty();
-  if (!profile.terms.empty())
-    r.report.error("E310", node, describe(node) + " has a profile and shapes of its own: give one");
-  const auto found = r.profiles.find(name->value);
-  if (found != r.profiles.end()) {
-    profile = found->second;
-    return true;
-  }
-  std::vector<std::string> known;
-  for (const auto& [key, value] : r.profiles)
-    known.push_back(key);
-  r.report.bad_value("E409", node, *name, "there is no profile '" + name->value + "'",
-                     mean(nearest_name(name->value, known)));
-  return true;
-}
-
 bool resolve_tendon(Reading& r, const Node& node, int scope, const Attribute& name,
                     DriveSpec& drive) {
   if (const auto found = find_tendon(r, scope, name.value)) {
@@ -305,6 +285,25 @@ void read_velocities(Reading& r, const Node& world) {
 }
 
 }  // namespace
+
+bool read_time_function(Reading& r, const Node& node, Profile& profile) {
+  const Attribute* name = node.attribute("profile");
+  profile = read_shapes(r, node);
+  if (!name) return !profile.terms.empty();
+  if (!profile.terms.empty())
+    r.report.error("E310", node, describe(node) + " has a profile and shapes of its own: give one");
+  const auto found = r.profiles.find(name->value);
+  if (found != r.profiles.end()) {
+    profile = found->second;
+    return true;
+  }
+  std::vector<std::string> known;
+  for (const auto& [key, value] : r.profiles)
+    known.push_back(key);
+  r.report.bad_value("E409", node, *name, "there is no profile '" + name->value + "'",
+                     mean(nearest_name(name->value, known)));
+  return true;
+}
 
 void read_actions(Reading& r, const Node& world) {
   const std::vector<bool> fixed = fixed_bodies(r.scene);

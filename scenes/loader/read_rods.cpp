@@ -178,6 +178,7 @@ void read_material(Reading& r, const Chain& chain, RodSpec& rod) {
                        "<material> of " + describe(*chain.front()) + " has no <" + key + ">");
   material.density = number_of(part(chain, "material", "density"), 0);
   material.youngs_modulus = number_of(part(chain, "material", "youngs_modulus"), 0);
+  material.thermal_expansion = number_of(part(chain, "material", "thermal_expansion"), 0);
   read_shear_modulus(r, chain, material);
   rod.material = material;
 }
@@ -373,6 +374,8 @@ void read_rods(Reading& r, const Node&) {
       }
       read_drag(r, chain, rod);
       if (const Node* disks = part(chain, "disks")) read_disks(r, *disks->parent, rod);
+      if (const Node* magnet = part(chain, "magnetization")) read_magnets(r, *magnet->parent, rod);
+      if (const Node* heat = part(chain, "temperature")) read_temperature(r, *heat, rod);
       rod.gravity = flag_of(part(chain, "gravity"), true);
       read_without(r, chain, rod);
       if (const Node* visual = part(chain, "visual"))

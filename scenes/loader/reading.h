@@ -47,6 +47,8 @@ void read_tendons(Reading& reading);                      // after the rods
 void read_profiles(Reading& reading, const Node& world);
 void read_actions(Reading& reading, const Node& world);  // drives, loads, initial velocities
 void read_targets(Reading& reading);                     // after the drives
+void read_magnetic_fields(Reading& reading, const Node& world);
+void check_fields(Reading& reading, const Node& world);  // that they have something to act on
 void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings
 void read_outputs(Reading& reading, const Node& world);  // videos, records, expectations, sweeps
 void read_expect(Reading& reading, const Node& node);
@@ -65,6 +67,13 @@ std::vector<Channel> channels_of(Reading& reading, const Node& node, const Attri
 
 /// Tells of pairs in `contact(a,b)` that cannot touch.
 void warn_of_pairs(Reading& reading, const Node& node, const std::vector<Channel>& channels);
+
+/// Of a rod or its class, all that stand in `owner`.
+void read_magnets(Reading& reading, const Node& owner, RodSpec& rod);
+void read_temperature(Reading& reading, const Node& node, RodSpec& rod);
+
+/// From a named profile or shapes of its own. @return whether the element has either
+bool read_time_function(Reading& reading, const Node& node, Profile& profile);
 
 /// Summed shapes of time that are children of `node`.
 Profile read_shapes(Reading& reading, const Node& node);

@@ -9,7 +9,8 @@ namespace {
 using T = ValueType;
 using S = Status;
 
-constexpr auto kTimed = "cprsim:profile cprsim:drive cprsim:load";
+constexpr auto kTimed =
+    "cprsim:profile cprsim:drive cprsim:load cprsim:magnetic_field rod_temperature";
 
 std::vector<ElementRule> rod_elements() {
   constexpr auto kRod = "cprsim:rod cprsim:rod_class";
@@ -48,6 +49,8 @@ std::vector<ElementRule> rod_elements() {
        "Shear modulus, or"},
       {"rod_material", "poisson_ratio", "", T::kNumber, "1", '?', S::kSupported,
        "Poisson's ratio."},
+      {"rod_material", "thermal_expansion", "", T::kNumber, "1/K", '?', S::kSupported,
+       "Relative growth of a length per kelvin; for the effect thermal."},
       {kRod, "stiffness", "rod_stiffness", T::kGroup, "", '?', S::kSupported,
        "Measured stiffness, instead of that of section and material."},
       {"rod_stiffness", "bending_x", "", T::kPositive, "N m2", '?', S::kSupported, "About x."},
@@ -86,6 +89,14 @@ std::vector<ElementRule> rod_elements() {
       {"rod_rest", "file", "", T::kText, "", '?', S::kSupported,
        "Table beside the scene, lines s,kx,ky,kz: s from 0 to 1, curvature as above; a natural "
        "cubic spline between."},
+      {kRod, "magnetization", "", T::kVec3, "A m", '*', S::kSupported,
+       "Magnetic moment per length, section axes; several add up. For the effect magnetic."},
+      {kRod, "temperature", "rod_temperature", T::kGroup, "", '?', S::kSupported,
+       "How much warmer it is than when it was without stress, times a function of time. For the "
+       "effect thermal."},
+      {"rod_temperature", "rise", "", T::kNumber, "K", '?', S::kSupported, "Of the centreline."},
+      {"rod_temperature", "gradient", "", T::kVec2, "K/m", '?', S::kSupported,
+       "Along the section's x and y axes: the rod bends away from its warm side."},
       {kRod, "disks", "rod_disks", T::kGroup, "", '*', S::kSupported,
        "Rigid disks across the rod: spacers, weights. Give count or s (docs/scene-format.md)."},
       {"rod_disks", "radius", "", T::kPositive, "m", '?', S::kSupported,
@@ -145,6 +156,10 @@ std::vector<ElementRule> run_elements() {
        "Of rods in a fluid, buoyancy and added mass."},
       {kEffects, "self_contact", "effect", T::kEmpty, "", '?', S::kSupported,
        "Of a rod with itself."},
+      {kEffects, "magnetic", "effect", T::kEmpty, "", '?', S::kSupported,
+       "Torque and force of <cprsim:magnetic_field> on rods that have a <magnetization>."},
+      {kEffects, "thermal", "effect", T::kEmpty, "", '?', S::kSupported,
+       "Rods that have a <temperature> grow longer and bend."},
       {kEffects, "tendon_friction", "effect", T::kEmpty, "", '?', S::kLater, "Of tendons."},
       {"physics", "cprsim:solver", "", T::kGroup, "", '?', S::kSupported,
        "How the rods are solved."},
@@ -186,6 +201,14 @@ std::vector<ElementRule> action_elements() {
       {"world model", "cprsim:load", "", T::kGroup, "", '*', S::kSupported, "Forces and torques."},
       {"cprsim:load", "force", "", T::kVec3, "N", '?', S::kSupported, "Force."},
       {"cprsim:load", "torque", "", T::kVec3, "N m", '?', S::kSupported, "Torque."},
+      {"world", "cprsim:magnetic_field", "", T::kGroup, "", '*', S::kSupported,
+       "Around rods, world axes, times a function of time; several add up."},
+      {"cprsim:magnetic_field", "uniform", "", T::kVec3, "T", '?', S::kSupported,
+       "The same everywhere, or"},
+      {"cprsim:magnetic_field", "dipole", "", T::kGroup, "", '?', S::kSupported,
+       "of a small magnet or coil."},
+      {"dipole", "position", "", T::kVec3, "m", '1', S::kSupported, "Where it is."},
+      {"dipole", "moment", "", T::kVec3, "A m2", '1', S::kSupported, "Its magnetic moment."},
       {"world model", "cprsim:target", "", T::kGroup, "", '*', S::kSupported,
        "A pose to which `cprsim solve` brings a frame; runs do not look at it."},
   };

@@ -36,6 +36,40 @@ void immerse(Scene& scene) {
   scene.rods[0].drag = water;
 }
 
+void magnetize(Scene& scene, const MagneticFieldSpec& field) {
+  switch_on(scene, {Effect::kMagnetic});
+  scene.rods[0].magnets.push_back({0, 1, {0, 0, 1}});
+  scene.magnetic_fields.push_back(field);
+}
+
+void magnetize_uniformly(Scene& scene) {
+  MagneticFieldSpec field;
+  field.uniform = {0.1, 0, 0};
+  magnetize(scene, field);
+}
+
+void magnetize_by_dipole(Scene& scene) {
+  MagneticFieldSpec field;
+  field.dipole = true;
+  field.position = {0.3, 0, 0.4};
+  field.moment = {0, 0, 500};
+  magnetize(scene, field);
+}
+
+void heat(Scene& scene) {
+  switch_on(scene, {Effect::kExtension, Effect::kThermal});
+  scene.rods[0].material->thermal_expansion = 1.2e-5;
+  scene.rods[0].temperature.emplace();
+  scene.rods[0].temperature->rise = 50;
+  scene.rods[0].temperature->gradient = {1000, 0};
+}
+
+void carry_disks(Scene& scene) {
+  switch_on(scene, {Effect::kGravity});
+  scene.gravity = {0, 0, -9.81};
+  scene.rods[0].disks = {{0.5, 0.002, 0.01}, {1, 0.002, 0.01}};
+}
+
 }  // namespace
 
 std::vector<RodCase> costed_cases() {
@@ -68,6 +102,10 @@ std::vector<RodCase> costed_cases() {
            }},
           {"tendon", false, [](Scene& scene) { add_tendon(scene, 8e-3, 0, 1); }},
           {"varying sections", false, taper},
+          {"magnetic, uniform field", false, magnetize_uniformly},
+          {"magnetic, dipole", false, magnetize_by_dipole},
+          {"thermal", false, heat},
+          {"disks", false, carry_disks},
           {"planar, at rest", false, [](Scene& scene) { scene.planar_normal = Vec3::UnitY(); }},
           {"planar, moving", true, [](Scene& scene) { scene.planar_normal = Vec3::UnitY(); }}};
 }

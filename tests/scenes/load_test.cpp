@@ -99,6 +99,58 @@ TEST(Fluid, IsReadValueByValueFromRodsAndClasses) {
   EXPECT_EQ(drag.added_mass, 1);
 }
 
+TEST(Fields, AreThoseOfTheWorldAndMagnetsThoseOfRodsOrClasses) {
+  std::string text = scene_text(R"(
+    <cprsim:rod_class name="magnet" class="steel">
+      <magnetization>0 0 2</magnetization><magnetization from="0.2" to="0.5">1 0 0</magnetization>
+    </cprsim:rod_class>
+    <cprsim:rod name="a" class="magnet"><base attached_to="base" joint="fixed"/><length>0.2</length>
+    </cprsim:rod>
+    <cprsim:rod name="b" class="magnet"><base attached_to="base" joint="fixed"/><length>0.2</length>
+      <magnetization from="0.8">0 3 0</magnetization></cprsim:rod>)");
+  text.insert(
+      text.find("<model"),
+      "<cprsim:magnetic_field profile=\"rise\"><uniform>1 2 3</uniform></cprsim:magnetic_field>"
+      "<cprsim:magnetic_field><dipole><position>4 5 6</position><moment>7 8 9</moment></dipole>"
+      "</cprsim:magnetic_field>"
+      "<cprsim:profile name=\"rise\"><constant value=\"0.5\"/></cprsim:profile>");
+  const LoadResult result = load_text(text);
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  const Scene& scene = *result.scene;
+  ASSERT_EQ(scene.magnetic_fields.size(), 2u);
+  EXPECT_EQ(scene.magnetic_fields[0].uniform, Vec3(1, 2, 3));
+  EXPECT_TRUE(scene.magnetic_fields[0].has_profile);
+  EXPECT_EQ(scene.magnetic_fields[0].profile.evaluate(0).value, 0.5);
+  EXPECT_TRUE(scene.magnetic_fields[1].dipole);
+  EXPECT_FALSE(scene.magnetic_fields[1].has_profile);
+  EXPECT_EQ(scene.magnetic_fields[1].position, Vec3(4, 5, 6));
+  EXPECT_EQ(scene.magnetic_fields[1].moment, Vec3(7, 8, 9));
+  const std::vector<MagnetSpec>&a = scene.rods.at(1).magnets, &b = scene.rods.at(2).magnets;
+  ASSERT_EQ(a.size(), 2u);
+  EXPECT_EQ(a[0].moment, Vec3(0, 0, 2));
+  EXPECT_EQ(a[0].from, 0);
+  EXPECT_EQ(a[0].to, 1);
+  EXPECT_EQ(a[1].from, 0.2);
+  EXPECT_EQ(a[1].to, 0.5);
+  ASSERT_EQ(b.size(), 1u);
+  EXPECT_EQ(b[0].moment, Vec3(0, 3, 0));
+}
+
+TEST(Temperature, IsARiseAndAGradientInTime) {
+  const auto scene = scene_of(R"(
+    <cprsim:rod name="a" class="steel"><base attached_to="base" joint="fixed"/><length>0.2</length>
+      <material><thermal_expansion>-2e-6</thermal_expansion></material>
+      <temperature><rise>40</rise><gradient>100 -200</gradient>
+        <ramp from="0" to="2" start="0" end="1"/></temperature></cprsim:rod>)");
+  const RodSpec& rod = scene->rods.at(1);
+  EXPECT_EQ(rod.material->thermal_expansion, -2e-6);
+  ASSERT_TRUE(rod.temperature);
+  EXPECT_EQ(rod.temperature->rise, 40);
+  EXPECT_EQ(rod.temperature->gradient, Vec2(100, -200));
+  ASSERT_TRUE(rod.temperature->has_profile);
+  EXPECT_EQ(rod.temperature->profile.evaluate(0.5).value, 1);
+}
+
 TEST(Disks, StandEvenlyOrWhereTheySay) {
   const auto scene = scene_of(R"(
     <cprsim:rod_class name="heavy" class="steel">

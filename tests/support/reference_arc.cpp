@@ -33,6 +33,7 @@ int slope(realtype s, N_Vector y_vector, N_Vector y_s_vector, void* rod_pointer)
   rod.f = given.f;
   rod.l = given.l;
   if (given.vary) given.vary(s, R, rod);
+  if (given.vary_at) given.vary_at({R, y.segment<3>(0)}, rod);
 
   // (2)
   const Vec3 u = rod.u_ref + rod.C_bt * (R.transpose() * m);

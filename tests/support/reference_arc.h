@@ -22,6 +22,8 @@ struct ReferenceRod {
   Vec3 l = Vec3::Zero();  ///< moment
   /// Changes `here` to what holds at s with the section turned by R.
   std::function<void(double s, const Mat3& R, ReferenceRod& here)> vary;
+  /// Likewise, to what holds where the section is.
+  std::function<void(const Pose& X_WS, ReferenceRod& here)> vary_at;
 };
 
 /// A section: pose, and the wrench that the part beyond it exerts on the part before it, world

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers: gravity ρAgL³/EI, shear EI/(κGA L²), extension and rotary inertia I/(A L²), damping
 // the ratio ζ₁ of the first bending mode, drag the largest ratio of a fluid's forces to the rod's
-// own (engine/run/facts.cpp).
+// own, magnetic M B L²/EI, thermal the largest of elongation, turn and what clamps make of it
+// (engine/run/facts.cpp).
 #include "tools/cprsim/advisor.h"
 
 namespace cprsim {
@@ -44,6 +45,9 @@ std::vector<AdviceLine> advise(const Scene& scene, const RodFacts& rod) {
   add(Effect::kExtension, "I / (A L^2)", rod.extension_number);
   // without <drag> nothing is known of the fluid
   if (rod.drag_number > 0) add(Effect::kDrag, "fluid / own force", rod.drag_number);
+  // likewise of magnets and heat
+  if (rod.magnetic_number > 0) add(Effect::kMagnetic, "M B L^2 / EI", rod.magnetic_number);
+  if (rod.thermal_number > 0) add(Effect::kThermal, "alpha T, alpha g L", rod.thermal_number);
   if (scene.simulation.mode == Mode::kDynamic) {
     add(Effect::kRotaryInertia, "I / (A L^2)", rod.extension_number);
     add(Effect::kDamping, "zeta_1", rod.damping_ratio);

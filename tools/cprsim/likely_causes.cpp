@@ -34,6 +34,11 @@ void blame_jumps(const Scene& scene, double time, double step, Causes& causes) {
   for (const LoadSpec& load : scene.loads) {
     if (load.has_profile) blame(load.profile, load.place, "load");
   }
+  for (const MagneticFieldSpec& field : scene.magnetic_fields)
+    if (field.has_profile) blame(field.profile, field.place, "magnetic field");
+  for (const RodSpec& rod : scene.rods)
+    if (rod.temperature && rod.temperature->has_profile)
+      blame(rod.temperature->profile, rod.temperature->place, "temperature");
 }
 
 void blame_resolution(const Scene& scene, const ProblemFacts& facts, Causes& causes) {

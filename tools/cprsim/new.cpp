@@ -49,7 +49,10 @@ constexpr std::string_view kStarterScene = R"xml(<?xml version="1.0"?>
       <!-- <contact/> --> <!-- of the wire and the ball with the floor -->
       <!-- <friction/> --> <!-- in contacts: list contact, too -->
       <!-- <self_contact/> --> <!-- of a rod with itself -->
+      <!-- <magnetic/> --> <!-- of <cprsim:magnetic_field> on the rod's <magnetization> -->
+      <!-- <thermal/> --> <!-- the rod grows and bends as <temperature> says; a <rise> needs extension, too -->
     </cprsim:effects>
+    <cprsim:magnetic_field><uniform>0 0 0.05</uniform></cprsim:magnetic_field> <!-- T; or <dipole> -->
     <light name="sun" type="directional"><direction>-0.4 0.3 -0.9</direction></light>
 
     <model name="bench">
@@ -82,6 +85,7 @@ constexpr std::string_view kStarterScene = R"xml(<?xml version="1.0"?>
           <density>7850</density>
           <youngs_modulus>200e9</youngs_modulus>
           <shear_modulus>77e9</shear_modulus>
+          <thermal_expansion>1.2e-5</thermal_expansion> <!-- 1/K -->
         </material>
         <damping> <!-- a time constant of 1 ms: 1e-3 s times E I, G J, E A, G A -->
           <bending>1.5708e-4</bending><torsion>1.2095e-4</torsion><axial>628.3</axial><shear>241.9</shear>
@@ -89,6 +93,8 @@ constexpr std::string_view kStarterScene = R"xml(<?xml version="1.0"?>
         <drag> <!-- of water -->
           <normal>1.2</normal><tangential>0.03</tangential><fluid_density>1000</fluid_density><added_mass>1</added_mass>
         </drag>
+        <magnetization>0 0 3</magnetization> <!-- magnetic moment per length, A m: a remanence of 1.2 T along it -->
+        <temperature><gradient>0 2000</gradient></temperature> <!-- K/m: 4 K from one side to the other -->
         <!-- <rest><curvature>0 2 0</curvature></rest> --> <!-- bent without load: 2/m about its y axis -->
       </cprsim:rod>
       <!-- <cprsim:tendon name="cable" rod="wire"><parallel radius="0.008" angle="0"/></cprsim:tendon><cprsim:drive tendon="cable" quantity="tension"><constant value="5"/></cprsim:drive> --> <!-- pulled with 5 N -->

@@ -118,6 +118,7 @@ Json energy_json(const Extremes& extremes) {
   Json json = {{"kinetic", energy.kinetic},
                {"elastic", energy.elastic},
                {"gravity", energy.gravity},
+               {"magnetic", energy.magnetic},
                {"dissipated", energy.dissipated},
                {"work", energy.work},
                {"total", energy.total},

@@ -52,8 +52,12 @@ std::string solver_line(const Scene& scene, const RunReport& report) {
 std::string energy_line(const Scene& scene, const RunReport& report) {
   const Extremes& extremes = report.extremes;
   if (scene.simulation.mode == Mode::kStatic) {
-    return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity\n",
-                       extremes.energy().elastic, extremes.energy().gravity);
+    const std::string magnetic =
+        scene.effects.has(Effect::kMagnetic)
+            ? fmt::format(", {:.4g} J magnetic", extremes.energy().magnetic)
+            : "";
+    return fmt::format("  energy     {:.4g} J elastic, {:.4g} J gravity{}\n",
+                       extremes.energy().elastic, extremes.energy().gravity, magnetic);
   }
   if (!extremes.relative_balance()) return "  energy     nothing moved\n";
   const char* of = extremes.exchanged() == extremes.largest_work()      ? "work done"

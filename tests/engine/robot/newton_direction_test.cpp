@@ -96,6 +96,40 @@ TEST(NewtonDirection, IsExactForSectionsAndRestShapesThatVary) {
   expect_exact(scene, {Rates::kGeneralizedAlpha}, "dynamics, everything");
 }
 
+TEST(NewtonDirection, IsExactInAMagneticField) {
+  for (bool stretches : {false, true}) {
+    Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+    if (stretches) set_all_effects(scene);
+    scene.effects.set(Effect::kMagnetic, true);
+    scene.magnetic_fields.resize(2);
+    scene.magnetic_fields[0].uniform = {0.4, 0.7, -0.5};
+    scene.magnetic_fields[1].dipole = true;
+    scene.magnetic_fields[1].position = {0.9, -0.6, 0.8};
+    scene.magnetic_fields[1].moment = {3e6, -2e6, 5e6};
+    scene.rods[0].magnets = {{0, 1, {0.3, -0.5, 0.8}}};
+    scene.rods[1].magnets = {{0.3, 1, {-0.4, 0.2, 0.6}}, {0, 0.6, {0.1, 0.5, 0.2}}};
+    const std::string what = stretches ? "extensible" : "inextensible";
+    expect_exact(scene, {}, what + ", statics");
+    expect_exact(scene, {Rates::kBackwardEuler}, what + ", dynamics");
+    scene.effects.set(Effect::kDrag, true);
+    expect_exact(scene, {Rates::kGeneralizedAlpha}, what + ", dynamics in a fluid");
+  }
+}
+
+TEST(NewtonDirection, IsExactForAHeatedRod) {
+  Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+  set_all_effects(scene);
+  scene.effects.set(Effect::kThermal, true);
+  for (RodSpec& rod : scene.rods) {
+    rod.material->thermal_expansion = 1e-3;
+    rod.temperature.emplace();
+    rod.temperature->rise = 80;
+    rod.temperature->gradient = {900, -600};
+  }
+  expect_exact(scene, {}, "statics");
+  expect_exact(scene, {Rates::kBackwardEuler}, "dynamics");
+}
+
 TEST(NewtonDirection, IsExactInAFluid) {
   for (bool stretches : {false, true}) {
     Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);

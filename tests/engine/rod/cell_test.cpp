@@ -106,6 +106,15 @@ Cell make_cell(const Case& c, unsigned seed) {
     // never at rest along the axis, where drag has no second derivative
     put(f.velocity_h, 8 * R.col(2) + numbers.vec3());
     put(f.acceleration_h, numbers.vec3());
+    // next to a dipole
+    f.loaded = f.magnetic = 1;
+    put(f.magnetization, numbers.vec3());
+  }
+  static const MagneticDipole dipole{{3, -2, 2.5}, {4e7, 7e7, -3e7}};
+  static const MagneticField field{{0.2, -0.3, 0.1}, &dipole, 1};
+  if (immersed(c.law)) {
+    M.loaded = true;
+    M.field = &field;
   }
   return cell;
 }

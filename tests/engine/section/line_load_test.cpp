@@ -33,7 +33,7 @@ struct Section {
 
   void evaluate() {
     const RowMat3 rows = R;
-    evaluate_surroundings(3, 2, {p.x(), p.y(), p.z()}, load_matrix(rows.data()), around);
+    evaluate_surroundings(3, 2, {p.x(), p.y(), p.z()}, load_matrix(rows.data()), nullptr, around);
   }
 };
 
