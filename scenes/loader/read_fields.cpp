@@ -6,13 +6,13 @@
 namespace cprsim {
 namespace {
 
-bool given(const Node& node, std::string_view name) {
+bool has_child(const Node& node, std::string_view name) {
   for (const auto& child : node.children)
     if (child->name == name) return true;
   return false;
 }
 
-const Node& node_of_rod(const Reading& r, std::size_t rod) {
+const Node& rod_node(const Reading& r, std::size_t rod) {
   return *r.frames.rods()[rod].node;
 }
 
@@ -20,7 +20,7 @@ bool feels(const Scene& scene, const RodSpec& rod, Effect effect) {
   return scene.effects.has(effect) && !rod.lacks(effect_name(effect));
 }
 
-void warn(Reading& r, Effect effect, const std::string& message) {
+void warn_of_effect(Reading& r, Effect effect, const std::string& message) {
   const std::string name = effect_name(effect);
   r.report.at(Severity::kWarning, "W503",
               r.scene.effects.asked_at[static_cast<std::size_t>(effect)],
@@ -37,7 +37,7 @@ void check_magnets(Reading& r, const Node& world) {
     if (rod.magnets.empty()) continue;
     any = true;
     if (!listed)
-      r.report.note("W511", node_of_rod(r, k),
+      r.report.note("W511", rod_node(r, k),
                     "rod '" + rod.name + "' has <magnetization>, magnetic is not listed");
     for (const DriveSpec& drive : scene.drives)
       if (drive.rod == static_cast<int>(k) && feels(scene, rod, Effect::kMagnetic))
@@ -51,11 +51,11 @@ void check_magnets(Reading& r, const Node& world) {
       r.report.note("W511", *field, "a magnetic field is given, magnetic is not among the effects");
     return;
   }
-  if (!given(world, "cprsim:magnetic_field"))
+  if (!has_child(world, "cprsim:magnetic_field"))
     r.report.missing("E503", world, "magnetic is listed and there is no <cprsim:magnetic_field>");
   if (!any && !r.report.failed())
-    warn(r, Effect::kMagnetic,
-         "magnetic is listed and no rod has <magnetization>; links do not feel it");
+    warn_of_effect(r, Effect::kMagnetic,
+                   "magnetic is listed and no rod has <magnetization>; links do not feel it");
 }
 
 void check_heat(Reading& r) {
@@ -66,7 +66,7 @@ void check_heat(Reading& r) {
     const RodSpec& rod = scene.rods[k];
     if (!rod.temperature) continue;
     any = true;
-    const Node& node = node_of_rod(r, k);
+    const Node& node = rod_node(r, k);
     if (!listed)
       r.report.note("W511", node,
                     "rod '" + rod.name + "' has <temperature>, thermal is not listed");
@@ -84,7 +84,7 @@ void check_heat(Reading& r) {
           .suggestion = "list extension, or give a <gradient> only";
   }
   if (listed && !any && !r.report.failed())
-    warn(r, Effect::kThermal, "thermal is listed and no rod has a <temperature>");
+    warn_of_effect(r, Effect::kThermal, "thermal is listed and no rod has a <temperature>");
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ void read_temperature(Reading& r, const Node& node, RodSpec& rod) {
   if (const Node* gradient = node.child("gradient"))
     if (const auto values = parse_numbers(gradient->text); values && values->size() == 2)
       heat.gradient = Vec2((*values)[0], (*values)[1]);
-  if (!given(node, "rise") && !given(node, "gradient"))
+  if (!has_child(node, "rise") && !has_child(node, "gradient"))
     r.report.missing("E303", node, "<temperature> has no <rise> and no <gradient>");
   heat.has_profile = read_time_function(r, node, heat.profile);
   rod.temperature = heat;
@@ -119,7 +119,7 @@ void read_magnetic_fields(Reading& r, const Node& world) {
     MagneticFieldSpec field;
     field.place = node->place;
     const Node *uniform = node->child("uniform"), *dipole = node->child("dipole");
-    if (given(*node, "uniform") == given(*node, "dipole"))
+    if (has_child(*node, "uniform") == has_child(*node, "dipole"))
       r.report.error("E310", *node, "a magnetic field is <uniform> or of a <dipole>: give one");
     field.dipole = dipole;
     field.uniform = vec3_of(uniform, Vec3::Zero());
