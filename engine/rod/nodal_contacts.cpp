@@ -1,35 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/rod/nodal_contacts.h"
 
-#include <algorithm>
-
 #include "engine/math/so3.h"
 
 namespace cprsim {
-namespace {
-
-Mat3 axes_of(const NodeState& node) {
-  return rotation_of(node);
-}
-
-}  // namespace
-
 void NodalContacts::set_surfaces(const std::vector<Surface>& surfaces, double radius,
                                  bool friction) {
   given_ = true;
   surfaces_ = surfaces;
   radius_ = radius;
-  friction_ = friction;
-  turns_.resize(friction ? 3 * static_cast<Eigen::Index>(contact_nodes().size()) : 0);
+  motion_.start(friction, contact_nodes().size());
   accept_contacts();
 }
 
 void NodalContacts::accept_contacts() {
   if (!given_) return;
-  accepted_ = contact_nodes();
-  references_.clear();
-  for (const NodeState& node : accepted_)
-    references_.push_back(axes_of(node));
+  motion_.accept(contact_nodes());
   for (RodContact& contact : contacts_)
     contact.held = contact.force;
 }
@@ -39,39 +25,11 @@ double NodalContacts::cell_length(std::size_t cell) const {
   return (grid[cell + 1] - grid[cell]) * host_.rod_length();
 }
 
-// As ShootingRod::contact_node().
 ContactNode NodalContacts::node(std::size_t k) const {
-  const NodeState& state = contact_nodes()[k];
   const StageRates& rates = host_.stage_rates();
-  ContactNode out;
-  out.p = position_of(state);
-  const Mat3 R = rotation_of(state);
-  out.t = R.col(2);
-  out.v.setZero();
-  out.w.setZero();
-  if (!friction_) return out;
-  if (!rates.dynamic()) {
-    out.v = out.p - position_of(accepted_[k]);
-    out.v_by_p = 1;
-    out.w = log_so3(R * rotation_of(accepted_[k]).transpose());
-    out.w_by_phi = right_jacobian_inverse(-out.w);
-    return out;
-  }
-  out.v = rates.c_v * out.p + host_.velocity_history(k);
-  out.v_by_p = rates.c_v;
-  // equations of engine/robot/body.cpp
-  const Vec3 theta = log_so3(references_[k].transpose() * R);
-  const Vec3 theta_t = rates.c_v * theta + turns_.x_h.segment<3>(3 * static_cast<Eigen::Index>(k));
-  Mat3 by_theta = rates.c_v * Mat3::Identity();
-  Vec3 omega = theta_t;
-  if (rates.body_rates) {
-    const Mat3 J_r = right_jacobian(theta);
-    omega = J_r * theta_t;
-    by_theta = rates.c_v * J_r + right_jacobian_derivative(theta, theta_t);
-  }
-  out.w = R * omega;
-  out.w_by_phi = R * by_theta * right_jacobian_inverse(theta) * R.transpose() - hat(out.w);
-  return out;
+  const bool dynamic = motion_.friction() && rates.dynamic();
+  return motion_.at(k, contact_nodes()[k], rates,
+                    dynamic ? host_.velocity_history(k) : Vec3(Vec3::Zero()));
 }
 
 ContactEnds NodalContacts::contact_ends(std::size_t index) const {
@@ -165,28 +123,12 @@ void NodalContacts::move(double alpha) {
 }
 
 void NodalContacts::fill_turns() {
-  if (!friction_) return;
-  const StageRates& rates = host_.stage_rates();
-  for (std::size_t k = 0; k < references_.size(); ++k) {
-    const auto i = 3 * static_cast<Eigen::Index>(k);
-    const Vec3 theta = log_so3(references_[k].transpose() * axes_of(contact_nodes()[k]));
-    const Vec3 theta_t = rates.c_v * theta + turns_.x_h.segment<3>(i);
-    turns_.x.segment<3>(i) = theta;
-    turns_.v.segment<3>(i) = rates.body_rates ? Vec3(right_jacobian(theta) * theta_t) : theta_t;
-  }
-}
-
-void NodalContacts::start_turns() {
-  if (!friction_) return;
-  turns_.set_start(VecX::Zero(turns_.x.size()), VecX::Zero(turns_.x.size()));
+  motion_.fill_turns(contact_nodes(), host_.stage_rates());
 }
 
 double NodalContacts::friction_power() const {
-  double power = 0;
-  if (!friction_ || !host_.stage_rates().dynamic()) return power;
-  for (std::size_t i = 0; i < std::min(rows_.size(), contacts_.size()); ++i)
-    if (contacts_[i].role != ContactRole::kEcho) power += contact_loss(contacts_[i], rows_[i]);
-  return power;
+  const bool moves = motion_.friction() && host_.stage_rates().dynamic();
+  return moves ? cprsim::friction_power(contacts_, rows_) : 0;
 }
 
 }  // namespace cprsim

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "engine/rod/contact.h"
+#include "engine/rod/contact_motion.h"
 #include "engine/rod/rod_model.h"
 
 namespace cprsim {
@@ -89,10 +89,12 @@ class NodalContacts final : public TouchingRod {
   void set_contacts(const std::vector<RodContact>& contacts) { contacts_ = contacts; }
 
   /// Turns of the nodes since the last step, with friction.
-  Track* turns() { return friction_ ? &turns_ : nullptr; }
+  Track* turns() { return motion_.turns(); }
 
   void fill_turns();
-  void start_turns();
+
+  void start_turns() { motion_.start_turns(); }
+
   /// W, taken out by friction.
   double friction_power() const;
 
@@ -106,12 +108,9 @@ class NodalContacts final : public TouchingRod {
   bool given_ = false;
   std::vector<Surface> surfaces_;
   double radius_ = 0;
-  bool friction_ = false;
   std::vector<RodContact> contacts_;
   std::vector<ContactRows> rows_;
-  std::vector<NodeState> accepted_;  ///< nodes from which slip counts without rates
-  Track turns_{Track::Kind::kRotation};
-  std::vector<Mat3> references_;
+  ContactMotion motion_;
   std::vector<Vec3> kept_;
   OpenPorts ports_;
   VecX direction_;

@@ -23,7 +23,7 @@
 
 #include <memory>
 
-#include "engine/rod/contact.h"
+#include "engine/rod/contact_motion.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/rod_disks.h"
 #include "engine/rod/rod_model.h"
@@ -191,7 +191,6 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   void open_contacts(std::size_t cell, NodeState& state) const;
   void close_contacts(std::size_t node, NodeState& state) const;
   void contact_residual(RodResidual& r, int& row);
-  void fill_contact_tracks();
   ContactNode contact_node(const NodeState& state, std::size_t node) const;
   void add_force_columns(const RodContact& contact, int end, const NodeState& state, int column,
                          double* Y) const;
@@ -328,12 +327,9 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   struct Touch {
     std::vector<Surface> surfaces;
     double radius = 0;
-    bool friction = false;
     std::vector<RodContact> contacts;
     std::vector<ContactRows> rows;
-    std::vector<NodeState> accepted;      ///< nodes from which slip counts without rates
-    Track turns{Track::Kind::kRotation};  ///< of the nodes, with friction
-    std::vector<Mat3> references;
+    ContactMotion motion;
     Columns opened;  ///< columns at the start of a cell with a contact
     std::vector<Vec3> kept, direction;
     std::unique_ptr<Open> open;  ///< only while contacts are shared

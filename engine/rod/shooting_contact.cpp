@@ -28,8 +28,7 @@ void ShootingRod::set_surfaces(const std::vector<Surface>& surfaces, double radi
   touch_ = std::make_unique<Touch>();
   touch_->surfaces = surfaces;
   touch_->radius = radius;
-  touch_->friction = friction;
-  touch_->turns.resize(friction ? 3 * static_cast<Eigen::Index>(nodes_.size()) : 0);
+  touch_->motion.start(friction, nodes_.size());
   accept_contacts();
 }
 
@@ -47,24 +46,9 @@ std::vector<ContactRows>& ShootingRod::contact_state() {
 
 void ShootingRod::accept_contacts() {
   if (!touch_) return;
-  touch_->accepted = nodes_;
-  touch_->references.clear();
-  for (const NodeState& node : nodes_)
-    touch_->references.emplace_back(rotation_of(node));
+  touch_->motion.accept(nodes_);
   for (RodContact& contact : touch_->contacts)
     contact.held = contact.force;
-}
-
-void ShootingRod::fill_contact_tracks() {
-  if (!touch_ || !touch_->friction) return;
-  for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    const auto i = 3 * static_cast<Eigen::Index>(k);
-    const Vec3 theta = log_so3(touch_->references[k].transpose() * rotation_of(nodes_[k]));
-    const Vec3 theta_t = rates_.c_v * theta + touch_->turns.x_h.segment<3>(i);
-    touch_->turns.x.segment<3>(i) = theta;
-    touch_->turns.v.segment<3>(i) =
-        rates_.body_rates ? Vec3(right_jacobian(theta) * theta_t) : theta_t;
-  }
 }
 
 const NodeState& ShootingRod::cell_state(std::size_t cell) const {
@@ -103,38 +87,9 @@ void ShootingRod::close_contacts(std::size_t node, NodeState& state) const {
 }
 
 ContactNode ShootingRod::contact_node(const NodeState& state, std::size_t node) const {
-  ContactNode out;
-  out.p = position_of(state);
-  const Mat3 R = rotation_of(state);
-  out.t = R.col(2);
-  out.v.setZero();
-  out.w.setZero();
-  if (!touch_->friction) return out;
-  if (!rates_.dynamic()) {
-    const NodeState& from = touch_->accepted[node];
-    out.v = out.p - position_of(from);
-    out.v_by_p = 1;
-    out.w = log_so3(R * rotation_of(from).transpose());
-    out.w_by_phi = right_jacobian_inverse(-out.w);
-    return out;
-  }
-  const auto i = 3 * static_cast<Eigen::Index>(node);
-  const auto at = 3 * static_cast<Eigen::Index>(stages_.size()) + i;
-  out.v = rates_.c_v * out.p + track_.x_h.segment<3>(at);
-  out.v_by_p = rates_.c_v;
-  // equations of engine/robot/body.cpp
-  const Vec3 theta = log_so3(touch_->references[node].transpose() * R);
-  const Vec3 theta_t = rates_.c_v * theta + touch_->turns.x_h.segment<3>(i);
-  const Mat3 J_r = right_jacobian(theta);
-  Mat3 by_theta = rates_.c_v * Mat3::Identity();
-  Vec3 omega = theta_t;
-  if (rates_.body_rates) {
-    omega = J_r * theta_t;
-    by_theta = rates_.c_v * J_r + right_jacobian_derivative(theta, theta_t);
-  }
-  out.w = R * omega;
-  out.w_by_phi = R * by_theta * right_jacobian_inverse(theta) * R.transpose() - hat(out.w);
-  return out;
+  const auto at = 3 * static_cast<Eigen::Index>(stages_.size() + node);
+  return touch_->motion.at(node, state, rates_,
+                           rates_.dynamic() ? Vec3(track_.x_h.segment<3>(at)) : Vec3(Vec3::Zero()));
 }
 
 // Of a limp rope the weight is what forces are measured by, not the bending stiffness.

@@ -74,13 +74,13 @@ void ShootingRod::mark_positions() {
 std::vector<Track*> ShootingRod::tracks() {
   std::vector<Track*> all{&track_};
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
-  if (touch_ && touch_->friction) all.push_back(&touch_->turns);
+  if (touch_ && touch_->motion.friction()) all.push_back(touch_->motion.turns());
   if (disks_ && disks_->turns()) all.push_back(disks_->turns());
   return all;
 }
 
 void ShootingRod::fill_tracks() {
-  fill_contact_tracks();
+  if (touch_) touch_->motion.fill_turns(nodes_, rates_);
   if (disks_) disks_->fill_turns();
   Eigen::Index i = 0;
   auto put = [&](const double* value) {
@@ -377,9 +377,8 @@ RodEnergy ShootingRod::energy() const {
   }
   e.magnetic = magnetic_energy(forcing_.field);
   if (disks_) disks_->add_energy(track_, e);
-  if (touch_ && touch_->friction && rates_.dynamic())
-    for (std::size_t i = 0; i < std::min(touch_->rows.size(), touch_->contacts.size()); ++i)
-      e.damping_power += contact_loss(touch_->contacts[i], touch_->rows[i]);
+  if (touch_ && touch_->motion.friction() && rates_.dynamic())
+    e.damping_power += friction_power(touch_->contacts, touch_->rows);
   // Energy that enters per unit feed: the base section's traction works on the inflow, which brings
   // strain energy and weight along.
   const NodeState& base = nodes_.front();
