@@ -40,8 +40,8 @@ Tube::Ring between(const Tube::Ring& a, const Tube::Ring& b, double t) {
 Tube make_tube(const RodSpec& spec, const Look& look, const RodSample& rod, ColorBy by,
                const Vec2& range) {
   Tube tube;
-  tube.section = spec.section;
-  tube.radius = rod.radius > 0 ? rod.radius : spec.section.size.maxCoeff();
+  tube.section = spec.outline();
+  tube.radius = rod.radius > 0 ? rod.radius : spec.outline().size.maxCoeff();
   tube.look = look;
   for (const RodPoint& point : rod.points) {
     const Color color = by == ColorBy::kNone ? Color(look.diffuse.cast<float>())

@@ -36,6 +36,13 @@ struct MaterialSpec {
   double thermal_expansion = 0;  ///< relative, 1/K
 };
 
+/// A ring of another material around the rod, bonded to what is within.
+struct LayerSpec {
+  SectionSpec section;  ///< an annulus
+  MaterialSpec material;
+  Place place;
+};
+
 /// Direct stiffnesses that replace those of section and material. Bending x: about the section's x
 /// axis, N m²; torsion N m²; axial and shear N.
 struct StiffnessSpec {
@@ -109,6 +116,7 @@ struct RodSpec {
   /// between them, a step where two have the same s. `section` is the first then.
   std::vector<SectionSpec> sections;
   std::optional<MaterialSpec> material;
+  std::vector<LayerSpec> layers;  ///< from the inside out
   StiffnessSpec stiffness;
   /// Bending about x and y, twist: of the unloaded rod, section axes, 1/m.
   Vec3 rest_curvature = Vec3::Zero();
@@ -122,6 +130,9 @@ struct RodSpec {
   SurfaceSpec surface;
   std::vector<std::string> without;  ///< effects switched off for this rod
   Look look;
+
+  /// What is seen of it from outside, where sections do not vary.
+  const SectionSpec& outline() const { return layers.empty() ? section : layers.back().section; }
 
   bool lacks(const std::string& effect) const {
     return std::find(without.begin(), without.end(), effect) != without.end();

@@ -19,6 +19,14 @@ double rectangle_torsion(double a, double b) {
   return a * b * b * b * (1.0 / 3 - 64 / std::pow(kPi, 5) * (b / a) * sum);
 }
 
+void add_material(const MaterialSpec& m, double area, const Vec3& I, SectionProperties& s) {
+  const double E = m.youngs_modulus, G = m.shear_modulus;
+  s.K_bt += Vec3(E * I.x(), E * I.y(), G * I.z());
+  s.K_se += area * Vec3(G, G, E);
+  s.rhoA += m.density * area;
+  s.rhoJ += m.density * Vec3(I.x(), I.y(), I.x() + I.y());
+}
+
 }  // namespace
 
 void section_geometry(const SectionSpec& section, double& area, Vec3& second_moments) {
@@ -57,14 +65,14 @@ FluidProperties fluid_properties(const DragSpec& drag, double area) {
 SectionProperties section_properties(const RodSpec& rod) {
   SectionProperties s;
   section_geometry(rod.section, s.area, s.second_moments);
-  if (rod.material) {
-    const MaterialSpec& m = *rod.material;
-    const double E = m.youngs_modulus, G = m.shear_modulus;
-    s.K_bt = {E * s.second_moments.x(), E * s.second_moments.y(), G * s.second_moments.z()};
-    s.K_se = {G * s.area, G * s.area, E * s.area};
-    s.rhoA = m.density * s.area;
-    const double Ix = s.second_moments.x(), Iy = s.second_moments.y();
-    s.rhoJ = m.density * Vec3(Ix, Iy, Ix + Iy);
+  if (rod.material) add_material(*rod.material, s.area, s.second_moments, s);
+  for (const LayerSpec& layer : rod.layers) {
+    double area = 0;
+    Vec3 I;
+    section_geometry(layer.section, area, I);
+    add_material(layer.material, area, I, s);
+    s.area += area;
+    s.second_moments += I;
   }
   const StiffnessSpec& k = rod.stiffness;
   s.K_bt = {k.bending_x.value_or(s.K_bt.x()), k.bending_y.value_or(s.K_bt.y()),
@@ -77,9 +85,9 @@ SectionProperties section_properties(const RodSpec& rod) {
     s.B_se = {b.shear, b.shear, b.axial};
   }
   s.u_rest = rod.rest_curvature;
-  const Vec2& size = rod.section.size;
-  s.half_width =
-      rod.section.shape == SectionShape::kRectangle ? 0.5 * size.norm() : size.maxCoeff();
+  const SectionSpec& outline = rod.outline();
+  s.half_width = outline.shape == SectionShape::kRectangle ? 0.5 * outline.size.norm()
+                                                           : outline.size.maxCoeff();
   return s;
 }
 

@@ -50,7 +50,8 @@ void section_geometry(const SectionSpec& section, double& area, Vec3& second_mom
 /// The part of the fluid that the rod's <drag> describes.
 FluidProperties fluid_properties(const DragSpec& drag, double area);
 
-/// All properties but the fluid's; direct stiffnesses replace those of shape and material.
+/// All properties but the fluid's. Layers bonded to a round section strain with it as one: about
+/// the common centre their stiffnesses and inertias add up. Direct stiffnesses replace the sums.
 SectionProperties section_properties(const RodSpec& rod);
 
 }  // namespace cprsim

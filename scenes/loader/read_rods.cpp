@@ -10,6 +10,7 @@
 #include "scenes/loader/disks.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/rest_table.h"
+#include "scenes/loader/sections.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
 
@@ -18,6 +19,9 @@ namespace cprsim {
 namespace {
 
 using Chain = std::vector<const Node*>;  ///< the rod, its class, that class's class, ...
+
+// of a radius: a layer that begins this little within what it lies around begins on it
+constexpr double kFit = 1e-9;
 
 const Node* find_class(const Reading& r, int scope, std::string_view name,
                        std::vector<std::string>& known) {
@@ -72,59 +76,6 @@ bool mentioned(const Chain& chain, std::string_view name) {
   return false;
 }
 
-/// The shape of a <cross_section>; nothing after an error.
-std::optional<SectionSpec> read_shape(Reading& r, const Node& node) {
-  SectionSpec section;
-  section.place = node.place;
-  section.s = number_attribute(node, "s", 0);
-  const Node* shape = nullptr;
-  for (const auto& child : node.children) {
-    if (child->broken) return std::nullopt;
-    if (shape) r.report.error("E304", *child, "a <cross_section> holds one shape");
-    shape = child.get();
-  }
-  if (!shape) {
-    r.report.missing("E303", node, "<cross_section> has no shape");
-    return std::nullopt;
-  }
-  const auto size = [&](const char* key) { return number_of(shape->child(key), 0); };
-  if (shape->name == "circle") {
-    section.size = Vec2(size("radius"), 0);
-  } else if (shape->name == "annulus") {
-    section.shape = SectionShape::kAnnulus;
-    section.size = Vec2(size("outer_radius"), size("inner_radius"));
-    if (section.size[1] >= section.size[0] && section.size[0] > 0)
-      r.report.error("E506", *shape, "the inner radius is not smaller than the outer one");
-  } else if (shape->name == "rectangle") {
-    section.shape = SectionShape::kRectangle;
-    section.size = Vec2(size("width"), size("height"));
-  } else {
-    section.shape = SectionShape::kEllipse;
-    const Node* axes = shape->child("semi_axes");
-    const auto values = axes ? parse_numbers(axes->text) : std::nullopt;
-    if (values && values->size() == 2) section.size = Vec2((*values)[0], (*values)[1]);
-    if (axes && section.size.minCoeff() <= 0)
-      r.report.bad_text("E306", *axes, "semi-axes must be positive");
-  }
-  return section;
-}
-
-/// What several sections along a rod must fulfil besides.
-void check_order(Reading& r, const Node& node, const SectionSpec* before,
-                 const SectionSpec& section) {
-  const Attribute* s = node.attribute("s");
-  if (!s)
-    r.report.missing("E308", node, "of several cross-sections each needs its s");
-  else if (section.s > 1)
-    r.report.bad_value("E306", node, *s, "s is a fraction of the rod's length, at most 1");
-  else if (before && section.s < before->s)
-    r.report.bad_value("E306", node, *s, "cross-sections stand in the order of their s");
-  else if (before && section.s > before->s && section.shape != before->shape)
-    r.report.error("E506", node,
-                   "between two s the shape stays the same: give both shapes at the s where one "
-                   "follows the other");
-}
-
 void read_section(Reading& r, const Chain& chain, RodSpec& rod) {
   const Node* node = part(chain, "cross_section");
   if (!node) {
@@ -133,14 +84,7 @@ void read_section(Reading& r, const Chain& chain, RodSpec& rod) {
                        describe(*chain.front()) + " has no <cross_section>");
     return;
   }
-  const std::vector<const Node*> all = node->parent->all("cross_section");
-  for (const Node* one : all) {
-    const auto section = read_shape(r, *one);
-    if (!section) continue;
-    if (all.size() > 1)
-      check_order(r, *one, rod.sections.empty() ? nullptr : &rod.sections.back(), *section);
-    rod.sections.push_back(*section);
-  }
+  rod.sections = read_sections(r, node->parent->all("cross_section"));
   if (!rod.sections.empty()) rod.section = rod.sections.front();
   rod.section.place = node->place;
   if (rod.sections.size() < 2) rod.sections.clear();
@@ -167,20 +111,64 @@ void read_shear_modulus(Reading& r, const Chain& chain, MaterialSpec& material) 
   }
 }
 
-void read_material(Reading& r, const Chain& chain, RodSpec& rod) {
+std::optional<MaterialSpec> read_material(Reading& r, const Chain& chain,
+                                          const std::string& owner) {
   const Node* group = part(chain, "material");
-  if (!group) return;
+  if (!group) return std::nullopt;
   MaterialSpec material;
   material.place = group->place;
   for (const char* key : {"density", "youngs_modulus"})
     if (!part(chain, "material", key) && !mentioned({group}, key))
-      r.report.missing("E505", *group,
-                       "<material> of " + describe(*chain.front()) + " has no <" + key + ">");
+      r.report.missing("E505", *group, "<material> of " + owner + " has no <" + key + ">");
   material.density = number_of(part(chain, "material", "density"), 0);
   material.youngs_modulus = number_of(part(chain, "material", "youngs_modulus"), 0);
   material.thermal_expansion = number_of(part(chain, "material", "thermal_expansion"), 0);
   read_shear_modulus(r, chain, material);
-  rod.material = material;
+  return material;
+}
+
+bool round(const SectionSpec& section) {
+  return section.shape == SectionShape::kCircle || section.shape == SectionShape::kAnnulus;
+}
+
+// Rings of other materials around the rod, from the inside out, bonded to each other.
+void read_layers(Reading& r, const Chain& chain, RodSpec& rod) {
+  const Node* first = part(chain, "layer");
+  if (!first) return;
+  double within = rod.section.size.x();
+  bool core_is_round = round(rod.section);
+  for (const SectionSpec& section : rod.sections) {
+    within = std::max(within, section.size.x());
+    core_is_round = core_is_round && round(section);
+  }
+  if (!core_is_round)
+    r.report.error("E506", *first, "layers lie around a round section: the rod's is another");
+  const std::string owner = "a layer of " + describe(*chain.front());
+  for (const Node* node : first->parent->all("layer")) {
+    LayerSpec layer;
+    layer.place = node->place;
+    const std::vector<const Node*> shapes = node->all("cross_section");
+    const std::vector<SectionSpec> sections = read_sections(r, shapes);
+    const std::optional<MaterialSpec> material = read_material(r, {node}, owner);
+    if (shapes.size() != 1 || !material) {
+      if (!mentioned({node}, "cross_section") || !mentioned({node}, "material") ||
+          shapes.size() > 1)
+        r.report.missing("E505", *node, "a <layer> has one <cross_section> and a <material>");
+      continue;
+    }
+    if (sections.empty()) continue;
+    layer.section = sections.front();
+    layer.material = *material;
+    if (layer.section.shape != SectionShape::kAnnulus)
+      r.report.error("E506", *shapes.front(), "a layer is an <annulus>");
+    else if (core_is_round && layer.section.size.y() < within * (1 - kFit))
+      r.report.error("E506", *shapes.front(),
+                     "the layer begins at a radius of " + format_number(layer.section.size.y()) +
+                         " m, within what it lies around: that ends at " + format_number(within) +
+                         " m");
+    within = layer.section.size.x();
+    rod.layers.push_back(layer);
+  }
 }
 
 void read_stiffness(const Chain& chain, RodSpec& rod) {
@@ -226,6 +214,8 @@ void read_rest(Reading& r, const Chain& chain, RodSpec& rod) {
   widen(rod.section);
   for (const SectionSpec& section : rod.sections)
     widen(section);
+  for (const LayerSpec& layer : rod.layers)
+    widen(layer.section);
   for (const RestSample& sample : rod.rest_samples)
     bend = std::max(bend, sample.curvature.head<2>().norm());
   if (bend * half >= 1)
@@ -361,7 +351,8 @@ void read_rods(Reading& r, const Node&) {
       for (auto node = chain.rbegin(); node != chain.rend(); ++node)
         if (const auto method = method_attribute(**node)) rod.method = method;
       read_section(r, chain, rod);
-      read_material(r, chain, rod);
+      rod.material = read_material(r, chain, describe(*chain.front()));
+      read_layers(r, chain, rod);
       read_stiffness(chain, rod);
       read_rest(r, chain, rod);
       require_stiffness(r, chain, rod);

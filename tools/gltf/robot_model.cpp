@@ -129,9 +129,9 @@ void RobotModel::add_rod(const Scene& scene, std::size_t index, const RodSample&
                                roughness_of(look), false};
     glb_.add_node({name, -1, {}, glb_.add_mesh(name, mesh, glb_.add_material(material)), skin});
   };
-  const double radius = rod.radius > 0 ? rod.radius : spec.section.size.maxCoeff();
+  const double radius = rod.radius > 0 ? rod.radius : spec.outline().size.maxCoeff();
   add_tube(spec.name,
-           make_tube_mesh(section_outline(spec.section, radius, kSides), poses,
+           make_tube_mesh(section_outline(spec.outline(), radius, kSides), poses,
                           std::vector<Vec2>(poses.size(), Vec2::Zero())),
            look_of_rod(spec, index));
   for (std::size_t k = 0; k < spec.disks.size(); ++k) {
