@@ -58,7 +58,26 @@ BasisValues BsplineSpace::basis(double x) const {
       if (k == degree_) out.slope[j] = slope;
     }
   }
+  if (weights_.size() > 0) make_rational(out);
   return out;
+}
+
+void BsplineSpace::weigh(const VecX& weights) {
+  assert(weights.size() == size() && weights.minCoeff() > 0);
+  weights_ = weights;
+}
+
+void BsplineSpace::make_rational(BasisValues& basis) const {
+  double W = 0, W_slope = 0;
+  for (int j = 0; j <= degree_; ++j) {
+    const double w = weights_[basis.first + j];
+    W += basis.value[j] *= w;
+    W_slope += basis.slope[j] *= w;
+  }
+  for (int j = 0; j <= degree_; ++j) {
+    basis.value[j] /= W;
+    basis.slope[j] = (basis.slope[j] - basis.value[j] * W_slope) / W;
+  }
 }
 
 std::vector<double> BsplineSpace::greville() const {

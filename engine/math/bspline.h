@@ -4,8 +4,10 @@
 //   B_i,0(x) = 1 on [t_i, t_i+1),
 //   B_i,p(x) = (x - t_i) / (t_i+p - t_i) B_i,p-1 + (t_i+p+1 - x) / (t_i+p+1 - t_i+1) B_i+1,p-1, (1)
 //   B'_i,p   = p / (t_i+p - t_i) B_i,p-1 - p / (t_i+p+1 - t_i+1) B_i+1,p-1.                     (2)
-// Source: Piegl & Tiller, "The NURBS book", 2nd ed., eqs. 2.5 and 2.7; Greville abscissae: de Boor,
-// "A practical guide to splines", ch. IX.
+// With weights w_i the functions are rational (NURBS),
+//   R_i = w_i B_i,p / W,   R'_i = (w_i B'_i,p - R_i W') / W,   W = sum_i w_i B_i,p.             (3)
+// Source: Piegl & Tiller, "The NURBS book", 2nd ed., eqs. 2.5, 2.7, 4.2 and 4.8; Greville
+// abscissae: de Boor, "A practical guide to splines", ch. IX.
 #pragma once
 
 #include <vector>
@@ -31,6 +33,9 @@ class BsplineSpace {
   /// first control point and ends at its last. @param breaks ascending, at least two.
   BsplineSpace(int degree, const std::vector<double>& breaks);
 
+  /// Makes the functions those of (3). @param weights one for each function, positive
+  void weigh(const VecX& weights);
+
   int degree() const { return degree_; }
 
   int size() const { return static_cast<int>(knots_.size()) - degree_ - 1; }
@@ -40,11 +45,12 @@ class BsplineSpace {
   /// At the end of the last piece: the limit from within.
   BasisValues basis(double x) const;
 
-  /// Where the spline with control points at these abscissae is x itself; one for each function,
-  /// and interpolation there is well-posed.
+  /// Where the spline with control points at these abscissae is x itself, without weights; one for
+  /// each function, and interpolation there is well-posed.
   std::vector<double> greville() const;
 
-  /// The splines that are derivatives of these; of degree one less, one function fewer.
+  /// The splines that are derivatives of these, without weights; of degree one less, one function
+  /// fewer.
   BsplineSpace derivatives() const;
 
   /// Control points (rows) of the spline with the given values (rows) at greville().
@@ -56,9 +62,11 @@ class BsplineSpace {
  private:
   BsplineSpace() = default;
   int span(double x) const;
+  void make_rational(BasisValues& basis) const;
 
   int degree_ = 0;
   std::vector<double> knots_;
+  VecX weights_;  ///< empty: all 1
 };
 
 }  // namespace cprsim

@@ -17,6 +17,7 @@
 #include "engine/model/solver_spec.h"
 #include "engine/model/sweep_spec.h"
 #include "engine/model/tendon_spec.h"
+#include "engine/model/tie_spec.h"
 #include "engine/model/touch.h"
 #include "engine/model/view_spec.h"
 
@@ -49,6 +50,7 @@ struct Scene {
   std::vector<JointSpec> joints;
   std::vector<RodSpec> rods;
   std::vector<TendonSpec> tendons;
+  std::vector<TieSpec> ties;
   std::vector<DriveSpec> drives;
   std::vector<LoadSpec> loads;
   std::vector<TargetSpec> targets;

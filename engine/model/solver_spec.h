@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/model/place.h"
 
@@ -66,6 +67,7 @@ struct SolverSpec {
   std::optional<int> degree;                ///< collocation: of the splines
   std::optional<int> elements;              ///< strain, collocation: pieces per rod
   std::optional<Basis> basis;               ///< names for spaces of functions; see scene-format.md
+  std::vector<double> weights;              ///< of nurbs
   Place space_place;                        ///< of all these
   std::optional<SchemeKind> scheme;         ///< default esdirk32
   std::optional<double> alpha, rho_inf;

@@ -10,6 +10,7 @@
 #include "engine/model/planar.h"
 #include "engine/robot/break_rod.h"
 #include "engine/robot/robot.h"
+#include "engine/robot/ties.h"
 
 namespace cprsim {
 namespace {
@@ -157,6 +158,7 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
   plan.drag = rod.section.fluid.resists();
   plan.touches = !plan.plane && (has(Effect::kContact) || has(Effect::kSelfContact));
   plan.magnetic = rod.magnetic;
+  plan.tied = rod.tied;
   plan.line_loads = !rod.line_loads.empty() || rod.magnetic;
   for (const LoadSpec* load : rod.loads)
     plan.stations.push_back(load->rod_s);
@@ -189,6 +191,7 @@ void add_rods(Robot& robot, const RodMaker& make) {
     rod.magnetic = has(Effect::kMagnetic) && !spec.magnets.empty();
     rod.heated = has(Effect::kThermal) && spec.temperature && spec.material;
     break_rod(scene, i, rod);
+    add_tie_stations(scene, i, rod);
     rod.gravity = spec.gravity && !spec.lacks("gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);
@@ -196,6 +199,7 @@ void add_rods(Robot& robot, const RodMaker& make) {
     rod.model = make(rod.choice.method, plan);
     robot.rods.push_back(std::move(rod));
   }
+  tie_rods(robot);
 }
 
 void add_actions(Robot& robot) {

@@ -161,4 +161,17 @@ PairRows rows_with_rod(const RodContact& contact, const RodSide& own, const RodS
   return rows;
 }
 
+PairRows tie_rows(const Vec3& arm, const Vec3& other_arm, const ContactEnds& own,
+                  const ContactEnds& other, const ContactScale& scale) {
+  const ContactNode &a = own.node[0], &b = other.node[0];
+  const Vec3 l = a.R * arm, other_l = b.R * other_arm;
+  const double unit = 1 / scale.length;
+  PairRows rows;
+  rows.value = unit * (a.p + l - b.p - other_l);
+  rows.by_ends.leftCols<6>() << -unit * hat(l), unit * Mat3::Identity();
+  rows.by_other.leftCols<6>() << unit * hat(other_l), -unit * Mat3::Identity();
+  rows.slip.setZero();
+  return rows;
+}
+
 }  // namespace cprsim

@@ -61,6 +61,10 @@ struct RodSide {
 PairRows rows_with_rod(const RodContact& contact, const RodSide& own, const RodSide& other,
                        const ContactScale& scale);
 
+/// (8), at nodes of both. @param arms of the rods, section axes
+PairRows tie_rows(const Vec3& arm, const Vec3& other_arm, const ContactEnds& own,
+                  const ContactEnds& other, const ContactScale& scale);
+
 /// d x / d (phi_0, p_0, phi_1, p_1) of the centreline's point.
 Mat3x12 point_by_ends(double xi, const ContactEnds& ends);
 

@@ -141,6 +141,9 @@ void Equations::set_fraction(double fraction) {
                                 robot_.scale.length, robot_.scale.moment(), robot_.scale.force)
                           .closure;
     }
+    tie_gap_.clear();
+    for (const Pair& pair : pairs_)
+      if (is_tie(pair)) tie_gap_.push_back(pair.rows.value);
     gaps_captured_ = true;
   }
   fraction_ = fraction;

@@ -70,6 +70,9 @@ class Equations final : public Problem {
   /// Of all rods, bodies and joints, with what the equations themselves remember.
   void visit(Archive& archive);
 
+  /// @throws StateError for contacts, read from a file, that cannot be this robot's
+  void expect_contacts(const RobotUnknowns& unknowns) const;
+
   /// restart() returns to the unknowns at this call.
   void mark_start() { start_ = unknowns(); }
 
@@ -145,6 +148,7 @@ class Equations final : public Problem {
   /// Bodies in flight stand still in statics: nothing holds them.
   bool stands_still(std::size_t body) const { return flies_[body] && !rates_.dynamic(); }
 
+  bool is_tie(const Pair& pair) const;
   void find_pairs();
   void evaluate_pairs(ProblemResidual& r);
   int number_pairs(int offset);
@@ -221,6 +225,7 @@ class Equations final : public Problem {
   std::vector<Vec6> wrench_;        ///< on each body
   std::vector<Mat6> body_tangent_;  ///< of loads and weight minus inertia
   std::vector<Vec6> joint_gap_;
+  std::vector<Vec3> tie_gap_;  ///< of the ties among pairs_, in their order
   std::vector<Pose> marked_;
   std::vector<Pair> pairs_;
   std::vector<char> flies_;      ///< bodies that nothing holds

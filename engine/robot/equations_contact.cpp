@@ -71,7 +71,13 @@ void Equations::find_pairs() {
   }
 }
 
+bool Equations::is_tie(const Pair& pair) const {
+  TouchingRod& side = *robot_.rods[pair.rod].model->touching();
+  return side.contacts()[pair.contact].grip == Grip::kTie;
+}
+
 void Equations::evaluate_pairs(ProblemResidual& r) {
+  std::size_t ties = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     Pair& pair = pairs_[k];
     const RobotRod& rod = robot_.rods[pair.rod];
@@ -95,12 +101,19 @@ void Equations::evaluate_pairs(ProblemResidual& r) {
     } else {
       own.at_end = at_end(side, contact.cell, contact.xi);
       const RobotRod& other_rod = robot_.rods[static_cast<std::size_t>(contact.other_rod)];
-      const TouchingRod& other_side = *other_rod.model->touching();
+      TouchingRod& other_side = *other_rod.model->touching();
       RodSide other;
       other.ends = other_side.contact_ends(static_cast<std::size_t>(contact.partner));
       other.radius = other_rod.section.half_width;
       other.at_end = at_end(other_side, contact.other_cell, contact.other_xi);
-      pair.rows = rows_with_rod(contact, own, other, side.contact_scale());
+      if (contact.grip == Grip::kTie) {
+        const auto partner = static_cast<std::size_t>(contact.partner);
+        pair.rows = tie_rows(contact.arm, other_side.contacts()[partner].arm, own.ends, other.ends,
+                             side.contact_scale());
+        if (gaps_captured_) pair.rows.value -= (1 - fraction_) * tie_gap_[ties++];
+      } else {
+        pair.rows = rows_with_rod(contact, own, other, side.contact_scale());
+      }
     }
     ContactRows& found = side.contact_state()[pair.contact];
     found.value = pair.rows.value;
@@ -246,8 +259,11 @@ double Equations::force_unit(int body) const {
 
 void Equations::pair_units(VecX& columns) const {
   for (const Pair& pair : pairs_) {
-    const int body = robot_.rods[pair.rod].model->touching()->contacts()[pair.contact].body;
-    columns.segment<3>(pair.offset).setConstant(force_unit(body));
+    RobotRod& rod = robot_.rods[pair.rod];
+    const int body = rod.model->touching()->contacts()[pair.contact].body;
+    const double inertia = rod.section.rhoA * rod.length * rates_.c_v * rates_.c_w;
+    columns.segment<3>(pair.offset)
+        .setConstant(std::max(force_unit(body), inertia * robot_.scale.length));
   }
 }
 
@@ -266,6 +282,9 @@ std::string Equations::pair_name(const Pair& pair) const {
   const RobotRod& rod = robot_.rods[pair.rod];
   const RodContact& contact = rod.model->touching()->contacts()[pair.contact];
   const Scene& scene = *robot_.scene;
+  if (contact.grip == Grip::kTie)
+    return "a tie of " + rod.spec->name + " and " +
+           robot_.rods[static_cast<std::size_t>(contact.other_rod)].spec->name;
   if (contact.body < 0 && contact.other_rod < 0)
     return "contact " + std::to_string(pair.contact + 1) + " of " + rod.spec->name;
   const std::string other =

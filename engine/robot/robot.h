@@ -50,6 +50,7 @@ struct RobotRod {
   std::vector<const LoadSpec*> line_loads;  ///< spread along it
   std::vector<RobotTendon> tendons;
   std::vector<double> breaks;  ///< s / L of breaks of tendons and line loads: no load acts there
+  bool tied = false;           ///< to another rod
   bool gravity = true;
   bool magnetic = false, heated = false;  ///< by the effects and what the rod has
   RodForcing forcing;                     ///< at the current instant

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "engine/math/so3.h"
 #include "engine/rod/arc_grid.h"
@@ -42,7 +43,7 @@ CollocationRod::CollocationRod(std::string name, const EndCondition& base, const
   reference_rotations_.assign(points_.size(), Mat3::Identity());
   forcing_.length = length;
   if (!options_.tendons.empty()) place_tendons();
-  if (options_.touches) touch_.reset(new NodalContacts(*this));
+  if (options_.touches || options_.tied) touch_.reset(new NodalContacts(*this));
   if (!options_.disks.empty()) place_disks();
   set_unloaded(X_WBase);
 }
@@ -87,6 +88,7 @@ void CollocationRod::place_sites(const std::vector<double>& grid) {
                                      grid.begin() + static_cast<std::ptrdiff_t>(ends[g + 1]) + 1);
     pieces_.push_back(
         {BsplineSpace(options_.degree, breaks), controls, static_cast<int>(sites_.size()), 0});
+    if (!options_.weights.empty()) weigh(pieces_[g].space);
     const BsplineSpace derivatives = pieces_[g].space.derivatives();
     const VecX weights = derivatives.greville_weights();
     for (double s : derivatives.greville())
@@ -100,10 +102,36 @@ void CollocationRod::place_sites(const std::vector<double>& grid) {
         nodes_.push_back(site(g, breaks[e] + (breaks[e + 1] - breaks[e]) * k / parts));
   }
   nodes_.push_back(site(pieces_.size() - 1, 1));
-  if (options_.touches) touch_grid_ = grid;
+  if (options_.touches || options_.tied)
+    for (std::size_t node : ends)
+      touch_grid_.push_back(grid[node]);
   control_.assign(static_cast<std::size_t>(controls), Vec13::Zero());
   points_.assign(sites_.size(), CollocationPoint{});
   find_band();
+}
+
+// The weights say which function W divides the splines; where its knots are among those of a piece
+// the piece takes it over exactly, as by knot insertion.
+void CollocationRod::weigh(BsplineSpace& space) const {
+  const auto count = static_cast<Eigen::Index>(options_.weights.size());
+  std::vector<double> breaks;
+  const auto elements = count - options_.degree;
+  for (Eigen::Index e = 0; e <= elements; ++e)
+    breaks.push_back(static_cast<double>(e) / static_cast<double>(elements));
+  const BsplineSpace whole(options_.degree, breaks);
+  const std::vector<double> points = space.greville();
+  MatX W(space.size(), 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const BasisValues b = whole.basis(points[i]);
+    W(static_cast<Eigen::Index>(i), 0) =
+        Eigen::Map<const VecX>(options_.weights.data() + b.first, options_.degree + 1)
+            .dot(Eigen::Map<const VecX>(b.value, options_.degree + 1));
+  }
+  const VecX weights = space.interpolate(W);
+  if (!(weights.minCoeff() > 0))
+    throw std::invalid_argument("the weights of rod '" + name_ +
+                                "' change too much from element to element");
+  space.weigh(weights);
 }
 
 CollocationRod::Site CollocationRod::site(std::size_t piece, double s) const {

@@ -12,8 +12,9 @@
 // that integrates to zero.
 //
 // Where a point load acts n, m jump: a knot of multiplicity p + 1 there, with q, p joined by rows.
-// A rod that may touch something has such knots between all elements: contacts act there.
-// In a plane one turn, two translations and forces and one moment are left: 7 rows a point for 13.
+// A rod that may touch something has such knots between all elements: contacts act there. A tied
+// one has them where it is tied. In a plane one turn, two translations and forces and one moment
+// are left: 7 rows a point for 13.
 //
 // Control points are eliminated from the base to the last one (engine/math/banded_elimination.h),
 // where six unknowns that the base leaves free are the z of the two-port.
@@ -53,10 +54,13 @@ struct CollocationOptions {
   bool line_loads = false;          ///< whether anything is spread along it
   std::vector<MagnetSpec> magnets;  ///< of what is spread along it; whose ends are stations
   bool touches = false;             ///< whether it may touch something
+  bool tied = false;                ///< at stations
   std::vector<double> stations;     ///< s of point loads
   std::vector<Tendon> tendons;      ///< whose breaks are stations, too
   std::vector<DiskSpec> disks;      ///< whose s are stations, too
   std::shared_ptr<const SectionsAlong> along;  ///< null: sections and rest shape do not vary
+  /// NURBS: of the degree + elements functions on equal elements; empty: all 1.
+  std::vector<double> weights;
 };
 
 class CollocationRod final : public RodModel, private TensionedRod, private ContactHost {
@@ -114,7 +118,8 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   TouchingRod* touching() override { return touch_.get(); }
 
   RodResolution resolution() const override {
-    return {Method::kCollocation, "B-splines", elements_, options_.degree};
+    const char* rule = options_.weights.empty() ? "B-splines" : "NURBS";
+    return {Method::kCollocation, rule, elements_, options_.degree};
   }
 
   int cells() const override { return elements_; }
@@ -143,6 +148,7 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   };
 
   void place_sites(const std::vector<double>& grid);
+  void weigh(BsplineSpace& space) const;
   void place_tendons();
   void describe_tendons(const Site& at, RodField& field) const;
   bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;

@@ -74,6 +74,7 @@ void CollocationRod::visit(Archive& archive) {
   archive.doubles(reference_rotations_);
   if (tendons_) tendons_->visit(archive);
   if (disks_) disks_->visit(archive);
+  if (touch_) touch_->visit(archive);
 }
 
 RodSample CollocationRod::observe() const {

@@ -148,4 +148,49 @@ ContactRows contact_rows(const RodContact& contact, const Surface& surface, doub
   return rows;
 }
 
+namespace {
+
+constexpr std::size_t kMostContacts = 100'000;
+
+/// An enumerator, none beyond `last`.
+template <class Enum>
+void visit(Enum& value, Enum last, Archive& archive) {
+  auto number = static_cast<std::size_t>(value);
+  number = archive.count(number, static_cast<std::size_t>(last));
+  value = static_cast<Enum>(number);
+}
+
+}  // namespace
+
+void visit(std::vector<RodContact>& contacts, Archive& archive) {
+  contacts.resize(archive.count(contacts.size(), kMostContacts));
+  for (RodContact& c : contacts) {
+    archive(c.surface);
+    archive(c.cell);
+    archive(c.xi);
+    visit(c.grip, Grip::kTie, archive);
+    archive(c.friction);
+    archive(c.may_rest);
+    for (double* value : {&c.bound, &c.sunk, &c.give, &c.lag, &c.kappa})
+      archive(*value);
+    for (Vec3* vector : {&c.lever, &c.axis, &c.arm, &c.held, &c.force})
+      archive(*vector);
+    visit(c.role, ContactRole::kEcho, archive);
+    for (int* index : {&c.body, &c.other_rod, &c.partner})
+      archive(*index);
+    archive(c.other_cell);
+    archive(c.other_xi);
+    archive(c.other_lever);
+  }
+}
+
+void visit(std::vector<ContactRows>& rows, Archive& archive) {
+  rows.resize(archive.count(rows.size(), kMostContacts));
+  for (ContactRows& row : rows) {
+    archive(row.at.d);
+    archive(row.at.n);
+    archive(row.slip);
+  }
+}
+
 }  // namespace cprsim

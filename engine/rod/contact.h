@@ -22,12 +22,17 @@
 // What is not rigid but gives, with the normal force k_p depth + k_d depth rate as in SDF, has in
 // (3) to (5) in the place of d - r - e
 //   d - r + (n.f + k_d n.u) / k_p                                                          (7)
+// A tie holds points beside two rods together, on arms that turn with their sections: of its rod
+// l = R arm, of the other l_2 = R_2 arm_2, and the rows are
+//   (x + l - x_2 - l_2) / L = 0                                                          (8)
+// It is always at a node, and nothing between solves changes it.
 // Which points touch, and which of (3) to (5) holds, is decided between solves
 // (engine/robot/contacts.h). L, F are the rod's scales, U is L times the rate of the scheme.
 #pragma once
 
 #include <vector>
 
+#include "engine/math/archive.h"
 #include "engine/model/distance.h"
 #include "engine/model/mesh_distance.h"
 #include "engine/rod/cell.h"
@@ -35,7 +40,7 @@
 
 namespace cprsim {
 
-enum class Grip { kSmooth, kStick, kSlip };
+enum class Grip { kSmooth, kStick, kSlip, kTie };
 
 /// Whose unknown the force is: the rod's own, where what it touches stands still and its method
 /// can; the robot's, where that moves by unknowns too (engine/robot/contact_pair.h); or what
@@ -66,6 +71,7 @@ struct RodContact {
   double kappa = 1;           ///< weighs u in (6)
   Vec3 lever = Vec3::Zero();  ///< l, as it was when the point was chosen
   Vec3 axis = Vec3::UnitZ();  ///< a, likewise
+  Vec3 arm = Vec3::Zero();    ///< of a tie, section axes
   Vec3 held = Vec3::Zero();   ///< f_0
   Vec3 force = Vec3::Zero();  ///< f: on the rod, world axes
 
@@ -82,6 +88,9 @@ struct RodContact {
 
   bool at_node() const { return xi == 0; }
 
+  /// l at an end whose axes are R.
+  Vec3 lever_at(const Mat3& R) const { return grip == Grip::kTie ? Vec3(R * arm) : lever; }
+
   /// The node at which everything the rows need is known.
   std::size_t closing_node() const { return at_node() ? cell : cell + 1; }
 };
@@ -89,6 +98,7 @@ struct RodContact {
 /// Motion of a cell's end; v by dp is v_by_p, w by phi is w_by_phi.
 struct ContactNode {
   Vec3 p, t, v, w;
+  Mat3 R = Mat3::Identity();
   double v_by_p = 0;
   Mat3 w_by_phi = Mat3::Zero();
 };
@@ -111,12 +121,18 @@ struct ContactScale {
   double axial_compliance = 0;             ///< C
 };
 
+/// Contacts as a solve leaves them. @throws StateError for more than a rod can have
+void visit(std::vector<RodContact>& contacts, Archive& archive);
+
 struct ContactRows {
   Vec3 value;
   Mat3 by_p[2], by_phi[2], by_force;
   Distance at;  ///< of the centreline
   Vec3 slip;    ///< u
 };
+
+/// What observers see of them.
+void visit(std::vector<ContactRows>& rows, Archive& archive);
 
 /// (3) to (5) for a gap d - r - e, a normal and a slip rate.
 struct GripRows {

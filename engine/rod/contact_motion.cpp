@@ -33,6 +33,7 @@ ContactNode ContactMotion::at(std::size_t node, const NodeState& state, const St
   ContactNode out;
   out.p = position_of(state);
   const Mat3 R = rotation_of(state);
+  out.R = R;
   out.t = R.col(2);
   out.v.setZero();
   out.w.setZero();
@@ -71,6 +72,11 @@ void ContactMotion::fill_turns(const std::vector<NodeState>& nodes, const StageR
 
 void ContactMotion::start_turns() {
   if (friction_) turns_.set_start(VecX::Zero(turns_.x.size()), VecX::Zero(turns_.x.size()));
+}
+
+void ContactMotion::visit(Archive& archive) {
+  archive.doubles(accepted_);
+  if (archive.reading()) accept(std::vector<NodeState>(accepted_));
 }
 
 double friction_power(const std::vector<RodContact>& contacts,

@@ -33,6 +33,9 @@ class ContactMotion {
   void fill_turns(const std::vector<NodeState>& nodes, const StageRates& rates);
   void start_turns();
 
+  /// But for turns(), which are visited as all tracks are.
+  void visit(Archive& archive);
+
  private:
   /// Turn since the last step and its rate, section axes.
   struct Turn {

@@ -19,6 +19,16 @@ double turn_of(const RodPlan& plan) {
   return plan.spec->length * plan.section.u_rest.norm();
 }
 
+/// Of the pieces between stations, a fraction of the length.
+double longest_span(std::vector<double> stations) {
+  stations.insert(stations.end(), {0, 1});
+  std::sort(stations.begin(), stations.end());
+  double longest = 0;
+  for (std::size_t i = 1; i < stations.size(); ++i)
+    longest = std::max(longest, stations[i] - stations[i - 1]);
+  return longest;
+}
+
 // Spline collocation: 8 elements of degree 2, 3, ... leave an error of kSplineError L, E elements
 // (8 / E)^order of it, where order is p for even p and p + 1 for odd p.
 constexpr double kSplineError[] = {2.4e-3, 4.5e-6, 7.2e-6, 4.5e-7, 1.5e-7, 2e-9, 3.3e-10};
@@ -31,7 +41,8 @@ constexpr double kFirstDigits = 1.5, kTurnPerElement = 4;
 // Contact is where elements meet: they must be short against what is touched, not of high degree.
 constexpr int kTouchingElements = 20, kTouchingOrder = 3, kTouchingDegree = 4;
 
-Method fitting_method(const SolverSpec& solver, std::string& why) {
+Method fitting_method(const RodPlan& plan, std::string& why) {
+  const SolverSpec& solver = *plan.solver;
   if (solver.points || solver.integrator) {
     why = "auto: <space> is shooting's";
     return Method::kShooting;
@@ -44,6 +55,11 @@ Method fitting_method(const SolverSpec& solver, std::string& why) {
   if (solver.degree || splines) {
     why = "auto: <space> is collocation's";
     return Method::kCollocation;
+  }
+  if (plan.plane && (plan.line_loads || plan.drag)) {
+    why = std::string("auto: in a plane shooting knows no ") +
+          (plan.drag ? "drag" : "load along a rod") + ", and the strain basis is the next fastest";
+    return Method::kStrain;
   }
   why = "auto: shooting takes the least time for its accuracy (docs/methods.md)";
   return Method::kShooting;
@@ -60,14 +76,16 @@ bool fineness_given(Method method, const SolverSpec& solver) {
 // N cells of gauss6 leave an error of 3.4e-8 L (6 / N)^6; without an accuracy there are 6. Other
 // integrators are there to be compared with and get cells for about the same cost. The error
 // depends on how far a cell turns: a rod wound up by `turn` > 1 rad gets as many times more.
+// Between its ties a rod bends like one of that length.
 int shooting_cells(const RodPlan& plan) {
   const SolverSpec& solver = *plan.solver;
   if (solver.points) return *solver.points;
   const bool best = solver.integrator.value_or(kDefaultIntegrator) == ArcIntegrator::kGauss6;
-  double cells = best ? 6 : 12;
+  const double span = plan.tied ? longest_span(plan.stations) : 1;
+  double cells = (best ? 6 : 12) * std::sqrt(span);
   if (best && solver.accuracy)
-    cells = std::clamp(
-        std::ceil(6 * std::pow(3.4e-7 * plan.spec->length / *solver.accuracy, 1.0 / 6)), 3.0, 60.0);
+    cells = 6 * std::pow(3.4e-7 * span * plan.spec->length / *solver.accuracy, 1.0 / 6);
+  cells = std::clamp(std::ceil(cells), plan.tied ? 2.0 : 3.0, 60.0) / span;
   return static_cast<int>(std::clamp(std::ceil(cells * std::max(1.0, turn_of(plan))), 3.0, 600.0));
 }
 
@@ -109,7 +127,7 @@ MethodChoice choose_method(const RodPlan& plan) {
   const SolverSpec& solver = *plan.solver;
   MethodChoice choice;
   if (rod.method.value_or(solver.method) == Method::kAuto)
-    choice.method = fitting_method(solver, choice.why);
+    choice.method = fitting_method(plan, choice.why);
   else
     choice = {rod.method.value_or(solver.method),
               rod.method ? "the rod asks for it" : "the solver asks for it"};

@@ -81,7 +81,7 @@ std::unique_ptr<RodModel> make_strain(const RodPlan& plan) {
   o.drag = plan.drag;
   o.line_loads = plan.line_loads;
   if (plan.magnetic) o.magnets = spec.magnets;
-  o.touches = plan.touches;
+  o.touches = plan.touches || plan.tied;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.disks = spec.disks;
@@ -100,6 +100,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   CollocationOptions o;
   o.degree = collocation_degree(plan);
   o.elements = collocation_elements(plan);
+  o.weights = plan.solver->weights;
   o.extension = plan.extension;
   o.shear = plan.shear;
   o.rotary_inertia = plan.rotary_inertia;
@@ -108,6 +109,7 @@ std::unique_ptr<RodModel> make_collocation(const RodPlan& plan) {
   o.line_loads = plan.line_loads;
   if (plan.magnetic) o.magnets = spec.magnets;
   o.touches = plan.touches;
+  o.tied = plan.tied;
   o.stations = plan.stations;
   o.tendons = plan.tendons;
   o.disks = spec.disks;

@@ -30,6 +30,7 @@ struct RodPlan {
   bool line_loads = false;       ///< whether anything is spread along it: loads, magnets
   bool magnetic = false;         ///< whether the rod's magnets count
   bool touches = false;          ///< whether it may touch something
+  bool tied = false;             ///< to another rod, at stations
   std::vector<double> stations;  ///< s / L of point loads, then of breaks: tendons, lines, disks
   std::vector<Tendon> tendons;
   const SolverSpec* solver = nullptr;  ///< resolution, accuracy

@@ -64,7 +64,7 @@ Vec6 NodalContacts::load_at(std::size_t node, const Mat3& R) const {
   at_node(node, [&](std::size_t i, double H, double hG, double S) {
     const RodContact& contact = contacts_[i];
     sum.head<3>() += H * contact.force;
-    sum.tail<3>() += (hG * R.col(2) + S * contact.lever).cross(contact.force);
+    sum.tail<3>() += (hG * R.col(2) + S * contact.lever_at(R)).cross(contact.force);
   });
   return sum;
 }
@@ -73,7 +73,9 @@ Vec6 NodalContacts::load_at(std::size_t node, const Mat3& R) const {
 Mat3 NodalContacts::moment_by_turn(std::size_t node, const Mat3& R) const {
   Mat3 sum = Mat3::Zero();
   at_node(node, [&](std::size_t i, double, double hG, double) {
-    if (hG != 0) sum += hG * hat(contacts_[i].force) * hat(Vec3(R.col(2)));
+    const RodContact& contact = contacts_[i];
+    if (hG != 0) sum += hG * hat(contact.force) * hat(Vec3(R.col(2)));
+    if (contact.grip == Grip::kTie) sum += hat(contact.force) * hat(contact.lever_at(R));
   });
   return sum;
 }
@@ -83,7 +85,7 @@ NodalContacts::ByForces NodalContacts::load_by_forces(std::size_t node, const Ma
   at_node(node, [&](std::size_t i, double H, double hG, double S) {
     const auto at = 3 * static_cast<Eigen::Index>(i);
     by.block<3, 3>(0, at) += H * Mat3::Identity();
-    by.block<3, 3>(3, at) += hat(Vec3(hG * R.col(2) + S * contacts_[i].lever));
+    by.block<3, 3>(3, at) += hat(Vec3(hG * R.col(2) + S * contacts_[i].lever_at(R)));
   });
   return by;
 }
@@ -120,6 +122,12 @@ void NodalContacts::keep() {
 void NodalContacts::move(double alpha) {
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     contacts_[i].force = kept_[i] + alpha * direction_.segment<3>(3 * static_cast<Eigen::Index>(i));
+}
+
+void NodalContacts::visit(Archive& archive) {
+  cprsim::visit(contacts_, archive);
+  cprsim::visit(rows_, archive);
+  motion_.visit(archive);
 }
 
 void NodalContacts::fill_turns() {

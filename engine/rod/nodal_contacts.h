@@ -85,6 +85,7 @@ class NodalContacts final : public TouchingRod {
 
   void keep();
   void move(double alpha);
+  void visit(Archive& archive);
 
   void set_contacts(const std::vector<RodContact>& contacts) { contacts_ = contacts; }
 

@@ -74,10 +74,11 @@ void ShootingRod::open_contacts(std::size_t cell, NodeState& state) const {
 void ShootingRod::add_contact_force(const RodContact& contact, int end, NodeState& state) const {
   const ContactWeights weights(contact.xi);
   const double h = contact.at_node() ? 0 : cell_length(contact.cell);
-  const Vec3 t = rotation_of(state).col(2), &f = contact.force;
+  const Mat3 R = rotation_of(state);
+  const Vec3 t = R.col(2), &f = contact.force;
   Eigen::Map<Vec3>(state.n) -= weights.H[end] * f;
   Eigen::Map<Vec3>(state.m) -=
-      weights.G[end] * h * t.cross(f) + weights.S[end] * contact.lever.cross(f);
+      weights.G[end] * h * t.cross(f) + weights.S[end] * contact.lever_at(R).cross(f);
 }
 
 void ShootingRod::close_contacts(std::size_t node, NodeState& state) const {
@@ -136,13 +137,14 @@ void ShootingRod::add_force_columns(const RodContact& contact, int end, const No
   ColumnsMap Y(Y0, 12, columns_);
   const ContactWeights weights(contact.xi);
   const double hG = contact.at_node() ? 0 : cell_length(contact.cell) * weights.G[end];
-  const Mat3 t = hat(rotation_of(state).col(2));
-  // d(t × f) = (phi × t) × f + t × df
+  const Mat3 R = rotation_of(state), t = hat(R.col(2)), lever = hat(contact.lever_at(R));
+  // d(t × f) = (phi × t) × f + t × df, and the same of an arm
   if (hG != 0) Y.middleRows<3>(9) -= hG * hat(contact.force) * t * Y.topRows<3>();
+  if (contact.grip == Grip::kTie) Y.middleRows<3>(9) -= hat(contact.force) * lever * Y.topRows<3>();
   if (column < 0) return;
   const double unit = port_scale_.force;
   Y.block<3, 3>(6, column) -= weights.H[end] * unit * Mat3::Identity();
-  Y.block<3, 3>(9, column) -= unit * (hG * t + weights.S[end] * hat(contact.lever));
+  Y.block<3, 3>(9, column) -= unit * (hG * t + weights.S[end] * lever);
 }
 
 void ShootingRod::open_contact_columns(std::size_t cell, double* Y) {

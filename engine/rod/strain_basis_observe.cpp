@@ -237,6 +237,7 @@ void StrainRod::visit(Archive& archive) {
     track->visit(archive);
   if (tendons_) tendons_->visit(archive);
   if (disks_) disks_->visit(archive);
+  if (touch_) touch_->visit(archive);
 }
 
 RodSample StrainRod::observe() const {

@@ -50,8 +50,12 @@ Parameter parameter_of(const Scene& scene, std::size_t index) {
   return p;
 }
 
-/// Where rods touch obstacles, equilibria depend on how they are reached.
+/// Where rods touch obstacles, equilibria depend on how they are reached; what ties do to the
+/// stability of two rods is not worked out.
 void refuse_contacts(const Scene& scene) {
+  if (!scene.ties.empty())
+    throw std::invalid_argument(
+        "rods are tied in this scene, which studies of equilibria do not see: simulate it");
   Robot robot = build_robot(scene);
   if (RodContacts(robot).any())
     throw std::invalid_argument(

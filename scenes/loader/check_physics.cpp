@@ -345,6 +345,7 @@ void check_ida(Reading& r) {
   for (const JointSpec& joint : scene.joints)
     for (int i = 0; i < freedom_count(joint.kind); ++i)
       if (axis_of(joint, i).friction > 0) why = "dry friction of joint '" + joint.name + "'";
+  if (!scene.ties.empty()) why = "tied rods";
   if (why.empty()) return;
   r.report
       .at(Severity::kError, "E520", scene.solver.place, 14,

@@ -116,6 +116,14 @@ class PlanarCheck {
     return true;
   }
 
+  /// As choose_method() will decide: left to the program it is another where shooting cannot.
+  bool by_shooting(const RodSpec& rod) const {
+    const SolverSpec& solver = scene_.solver;
+    const Method method = rod.method.value_or(solver.method);
+    return method == Method::kShooting ||
+           (method == Method::kAuto && (solver.points || solver.integrator));
+  }
+
   void check(const RodSpec& rod) {
     if (rod.sections.size() > 1)
       complain(rod.place, 10,
@@ -123,9 +131,7 @@ class PlanarCheck {
     if (!rod.rest_curvature.isZero() || !rod.rest_samples.empty())
       complain(rod.place, 10,
                "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
-    const Method method = rod.method.value_or(scene_.solver.method);
-    if (scene_.effects.has(Effect::kDrag) && rod.drag && !rod.lacks("drag") &&
-        (method == Method::kAuto || method == Method::kShooting))
+    if (scene_.effects.has(Effect::kDrag) && rod.drag && !rod.lacks("drag") && by_shooting(rod))
       complain(rod.place, 10,
                "rod '" + rod.name + "' has drag, which shooting in a plane does not know",
                "leave <planar> out, or take method=\"strain\" or \"collocation\"");
@@ -192,8 +198,7 @@ class PlanarCheck {
   void check(const LoadSpec& load) {
     if (load.to) {
       const RodSpec& rod = scene_.rods[at(load.rod)];
-      const Method method = rod.method.value_or(scene_.solver.method);
-      if (method == Method::kAuto || method == Method::kShooting)
+      if (by_shooting(rod))
         complain(load.place, 11,
                  "a load along rod '" + rod.name + "', which shooting in a plane does not know",
                  "leave <planar> out, or take method=\"strain\" or \"collocation\"");

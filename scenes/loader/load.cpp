@@ -79,6 +79,7 @@ void read_world(Reading& reading, const Node& world) {
   read_joints(reading, world);
   read_rods(reading, world);
   read_tendons(reading);
+  read_ties(reading);
   read_actions(reading, world);
   read_magnetic_fields(reading, world);
   read_targets(reading);
@@ -86,6 +87,7 @@ void read_world(Reading& reading, const Node& world) {
   check_physics(reading);
   check_fields(reading, world);
   check_tendons(reading);
+  check_ties(reading);
   check_contact(reading);
   check_planar(reading, world);
   read_outputs(reading, world);

@@ -87,6 +87,28 @@ constexpr Word<SchemeKind> kSchemes[] = {{"backward_euler", SchemeKind::kBackwar
                                          {"radau5", SchemeKind::kRadau5},
                                          {"ida", SchemeKind::kIda}};
 
+void read_weights(Reading& r, const Node& node) {
+  const Attribute* weights = node.attribute("weights");
+  if (!weights) return;
+  SolverSpec& solver = r.scene.solver;
+  if (solver.basis != Basis::kNurbs || !solver.degree || !solver.elements) {
+    r.report.bad_value("E310", node, *weights, "weights are those of a basis of known size",
+                       "basis=\"nurbs\", with degree and elements");
+    return;
+  }
+  solver.weights = parse_numbers(weights->value).value_or(std::vector<double>{});
+  const int functions = *solver.degree + *solver.elements;
+  if (solver.weights.size() != static_cast<std::size_t>(functions))
+    r.report.bad_value("E306", node, *weights,
+                       std::to_string(functions) +
+                           " weights belong to the functions of this degree on these elements");
+  for (const double weight : solver.weights)
+    if (!(weight > 0)) {
+      r.report.bad_value("E306", node, *weights, "weights are positive");
+      return;
+    }
+}
+
 void read_space(Reading& r, const Node& node) {
   SolverSpec& solver = r.scene.solver;
   solver.space_place = node.place;
@@ -106,6 +128,7 @@ void read_space(Reading& r, const Node& node) {
   solver.order = count("order", kHighestOrder);
   solver.degree = count("degree", kHighestDegree, kLowestDegree);
   solver.elements = count("elements", kMostElements);
+  read_weights(r, node);
 }
 
 void in_range(Reading& r, const Node& node, const char* key, double low, double high) {

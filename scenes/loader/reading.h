@@ -44,6 +44,7 @@ void read_bodies(Reading& reading, const Node& world);    // links
 void read_joints(Reading& reading, const Node& world);    // rigid joints
 void read_rods(Reading& reading, const Node& world);      // rods and their classes
 void read_tendons(Reading& reading);                      // after the rods
+void read_ties(Reading& reading);                         // likewise
 void read_profiles(Reading& reading, const Node& world);
 void read_actions(Reading& reading, const Node& world);  // drives, loads, initial velocities
 void read_targets(Reading& reading);                     // after the drives
@@ -55,6 +56,7 @@ void read_expect(Reading& reading, const Node& node);
 void read_sweep(Reading& reading, const Node& node, const Node& world);
 void check_physics(Reading& reading);                    // what only the whole scene can tell
 void check_tendons(Reading& reading);                    // that all are driven, and how
+void check_ties(Reading& reading);                       // what tied rods may have besides
 void check_contact(Reading& reading);                    // what rods can touch
 void check_planar(Reading& reading, const Node& world);  // that nothing leaves the plane
 

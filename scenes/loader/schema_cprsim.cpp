@@ -13,7 +13,7 @@ constexpr auto kTimed =
     "cprsim:profile cprsim:drive cprsim:load cprsim:magnetic_field rod_temperature";
 
 std::vector<ElementRule> rod_elements() {
-  constexpr auto kRod = "cprsim:rod cprsim:rod_class";
+  constexpr auto kRod = "cprsim:rod cprsim:rod_class", kSolid = "cprsim:rod cprsim:rod_class layer";
   return {
       {"model", "cprsim:rod_class", "", T::kGroup, "", '*', S::kSupported,
        "Properties that rods take over with class=\"...\"."},
@@ -27,7 +27,9 @@ std::vector<ElementRule> rod_elements() {
       {"rod_axis", "xyz", "", T::kVec3, "", '1', S::kSupported,
        "Its direction in the end's frame."},
       {"cprsim:rod", "length", "", T::kPositive, "m", '1', S::kSupported, "Length without load."},
-      {kRod, "cross_section", "", T::kGroup, "", '*', S::kSupported,
+      {kRod, "layer", "", T::kGroup, "", '*', S::kSupported,
+       "A ring of another material around the rod and the layers before, bonded to them."},
+      {kSolid, "cross_section", "", T::kGroup, "", '*', S::kSupported,
        "One shape, or several along the rod, each with its s."},
       {"cross_section", "circle", "", T::kGroup, "", '?', S::kSupported, "A full circle."},
       {"circle", "radius", "", T::kPositive, "m", '1', S::kSupported, "Radius."},
@@ -41,7 +43,8 @@ std::vector<ElementRule> rod_elements() {
        "Along the section's y axis."},
       {"cross_section", "ellipse", "", T::kGroup, "", '?', S::kSupported, "An ellipse."},
       {"ellipse", "semi_axes", "", T::kVec2, "m", '1', S::kSupported, "Along x and y."},
-      {kRod, "material", "rod_material", T::kGroup, "", '?', S::kSupported, "Isotropic material."},
+      {kSolid, "material", "rod_material", T::kGroup, "", '?', S::kSupported,
+       "Isotropic material."},
       {"rod_material", "density", "", T::kPositive, "kg/m3", '?', S::kSupported, "Density."},
       {"rod_material", "youngs_modulus", "", T::kPositive, "Pa", '?', S::kSupported,
        "Young's modulus."},
@@ -106,6 +109,15 @@ std::vector<ElementRule> rod_elements() {
       {kRod, "visual", "rod_visual", T::kGroup, "", '?', S::kSupported, "Its look."},
       {kRod, "without", "", T::kText, "", '*', S::kSupported,
        "Effects that this rod does not have."},
+      {"model", "cprsim:tie", "", T::kGroup, "", '*', S::kSupported,
+       "Ties two rods together at points: bundles, sleeves."},
+      {"cprsim:tie", "s", "", T::kNumbers, "1", '1', S::kSupported,
+       "Where along the first rod: fractions of its length, above 0, ascending."},
+      {"cprsim:tie", "other_s", "", T::kNumbers, "1", '?', S::kSupported,
+       "Where along the other; the same s if absent."},
+      {"cprsim:tie", "offset", "", T::kVec3, "m", '?', S::kSupported,
+       "Of the other's centreline from the first's, section axes of the first; as the unloaded "
+       "rods lie if absent."},
       {"model", "cprsim:tendon", "", T::kGroup, "", '*', S::kSupported,
        "A cable along a rod that a motor at the base pulls: docs/tendons.md."},
       {"cprsim:tendon", "parallel", "", T::kEmpty, "", '?', S::kSupported,

@@ -26,7 +26,8 @@ const char* method_words() {
 std::vector<AttributeRule> cprsim_attributes() {
   const auto yes = S::kSupported;
   return {
-      {"cprsim:rod cprsim:rod_class cprsim:tendon cprsim:profile cprsim:camera cprsim:joint",
+      {"cprsim:rod cprsim:rod_class cprsim:tie cprsim:tendon cprsim:profile cprsim:camera "
+       "cprsim:joint",
        "name", T::kName, "", true, yes, "Unique."},
       {"cprsim:expect cprsim:sweep", "name", T::kText, "", true, yes, "Says what it is about."},
       {"cprsim:rod cprsim:rod_class", "class", T::kRef, "", false, yes,
@@ -58,7 +59,10 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"space", "integrator", T::kChoice, "euler|rk4|gauss2|gauss4|gauss6|!magnus4|!dopri5", false,
        yes, "shooting: rule for each step."},
       {"space", "basis", T::kChoice, "legendre|chebyshev|bspline|nurbs", false, yes,
-       "strain: legendre or chebyshev, one space; collocation: bspline or nurbs, the same here."},
+       "strain: legendre or chebyshev, one space; collocation: bspline, or nurbs with weights."},
+      {"space", "weights", T::kNumbers, "1", false, yes,
+       "nurbs: of the degree + elements functions along a rod; equal if absent, and the functions "
+       "are bspline's."},
       {"space", "order", T::kCount, "1", false, yes, "strain: highest degree."},
       {"space", "degree", T::kCount, "1", false, yes, "collocation: of the B-splines, 2 to 8."},
       {"space", "elements", T::kCount, "1", false, yes,
@@ -109,6 +113,8 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"cprsim:drive", "tendon", T::kRef, "", false, yes, "the tendon."},
       {"cprsim:drive", "quantity", T::kChoice,
        "position|velocity|effort|length|tension|displacement", true, yes, "What is prescribed."},
+      {"cprsim:tie", "rod", T::kRef, "", true, yes, "The rod that carries the arm."},
+      {"cprsim:tie", "other", T::kRef, "", true, yes, "The rod that is held at its end."},
       {"cprsim:tendon", "rod", T::kRef, "", true, yes, "The rod along which it runs."},
       {"parallel helical", "radius", T::kPositive, "m", true, yes, "Distance from the centreline."},
       {"parallel helical", "angle", T::kNumber, "rad", true, yes,

@@ -110,6 +110,60 @@ INSTANTIATE_TEST_SUITE_P(Degrees, SplineOrder,
                                            OrderCase{5, 20}, OrderCase{6, 16}, OrderCase{7, 10},
                                            OrderCase{8, 10}));
 
+/// Finer splines are divided by nearly the same smooth function.
+std::vector<double> some_weights(int degree, int elements) {
+  std::vector<double> breaks;
+  for (int e = 0; e <= elements; ++e)
+    breaks.push_back(static_cast<double>(e) / elements);
+  const BsplineSpace space(degree, breaks);
+  MatX values(space.size(), 1);
+  int i = 0;
+  for (const double x : space.greville())
+    values(i++, 0) = 1 + 0.4 * std::sin(4 * x);
+  const VecX weights = space.interpolate(values);
+  return {weights.data(), weights.data() + weights.size()};
+}
+
+// Rational functions approximate as well as the polynomials that they are made of.
+TEST_P(SplineOrder, IsThatOfNurbsToo) {
+  const int degree = GetParam().degree, coarse = GetParam().coarse;
+  const Elastica exact = solve_elastica(5);
+  const auto error = [&](int elements) {
+    Scene scene = with_splines(cantilever(), degree, elements);
+    scene.solver.weights = some_weights(degree, elements);
+    add_load(scene, 1, {5 * load_unit(scene), 0, 0});
+    const Equilibrium equilibrium(scene);
+    const Vec3 at = equilibrium.rod().points.back().position / kLength;
+    return std::hypot(at.x() - exact.x, at.z() - exact.z);
+  };
+  // of degree 8 round-off comes before the order is quite reached
+  const double observed = std::log2(error(coarse) / error(2 * coarse));
+  EXPECT_GT(observed, degree - 0.8);
+}
+
+TEST(Nurbs, OfEqualWeightsAreBsplines) {
+  Scene scene = with_splines(cantilever(), 4, 12);
+  add_load(scene, 1, {3 * load_unit(scene), load_unit(scene), 0});
+  add_load(scene, 0.37, {0, 2 * load_unit(scene), 0});
+  Scene weighted = scene;
+  weighted.solver.weights.assign(16, 2.5);
+  const Equilibrium a(scene), b(weighted);
+  ASSERT_TRUE(a.report.converged() && b.report.converged());
+  EXPECT_LT(distance(a.rod(), b.rod()), 1e-13);
+}
+
+// A load between the knots cuts the splines in two; each part keeps the function that divides.
+TEST(Nurbs, MeetShootingAcrossALoad) {
+  Scene scene = with_splines(cantilever(), 7, 20);
+  scene.solver.weights = some_weights(7, 20);
+  add_load(scene, 1, {3 * load_unit(scene), load_unit(scene), 0});
+  add_load(scene, 0.37, {0, 2 * load_unit(scene), 0});
+  const Equilibrium a(scene), b(with_shooting(scene, 40));
+  ASSERT_TRUE(a.report.converged() && b.report.converged());
+  EXPECT_LT((a.rod().points.back().position - b.rod().points.back().position).norm(),
+            1e-8 * kLength);
+}
+
 // Slenderness L/r from 20 to 20,000, shear and extension on and off: the error of the same coarse
 // splines does not depend on it, where a displacement form locks by a factor of the slenderness.
 TEST(Splines, DoNotLock) {

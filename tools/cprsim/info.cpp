@@ -138,6 +138,16 @@ std::vector<std::string> axis_texts(const Scene& scene, std::size_t index) {
   return texts;
 }
 
+std::string ties_text(const Scene& scene) {
+  std::string text;
+  for (const TieSpec& tie : scene.ties)
+    text += fmt::format("tie {}: {} to {}, at {} {}\n", tie.name,
+                        scene.rods[static_cast<std::size_t>(tie.rod)].name,
+                        scene.rods[static_cast<std::size_t>(tie.other)].name, tie.s.size(),
+                        tie.s.size() == 1 ? "place" : "places");
+  return text;
+}
+
 std::string joints_text(const Scene& scene) {
   std::string text;
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
@@ -258,7 +268,7 @@ int info_command(const Words& words) {
     const ProblemFacts& facts = simulation->facts();
     if (console.json()) write_to_stdout(to_json(scene, facts).dump(2) + "\n");
     console.say(contents_text(scene) + solver_text(facts) + effects_text(scene) +
-                joints_text(scene));
+                joints_text(scene) + ties_text(scene));
     for (const RodGroup& group : groups_of(facts))
       console.say(rod_text(scene, group));
   } catch (const std::invalid_argument& error) {

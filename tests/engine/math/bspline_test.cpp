@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace cprsim {
@@ -153,6 +154,54 @@ TEST_P(Bspline, WeightsIntegrateTheSplinesAndArePositive) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Bspline, ::testing::Range(2, kMaxDegree + 1));
+
+TEST_P(Bspline, WithWeightsIsRationalAndSumsToOne) {
+  BsplineSpace space(GetParam(), kBreaks);
+  VecX weights(space.size());
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    weights[i] = 1.5 + std::sin(3.0 * static_cast<double>(i));
+  space.weigh(weights);
+  const MatX control = some_control_points(space.size());
+  for (double x : places()) {
+    const BasisValues b = space.basis(x);
+    double sum = 0, slopes = 0;
+    for (int j = 0; j <= space.degree(); ++j) {
+      EXPECT_GE(b.value[j], 0) << x;
+      sum += b.value[j];
+      slopes += b.slope[j];
+    }
+    EXPECT_NEAR(sum, 1, 1e-14) << x;
+    EXPECT_NEAR(slopes, 0, 1e-11) << x;
+    const double h = 1e-5;
+    const bool at_break = std::any_of(kBreaks.begin(), kBreaks.end(),
+                                      [&](double end) { return std::abs(x - end) <= h; });
+    if (at_break) continue;
+    const Eigen::RowVectorXd difference =
+        (value(space, control, x + h) - value(space, control, x - h)) / (2 * h);
+    EXPECT_LT((slope(space, control, x) - difference).norm(), 1e-6) << x;
+  }
+  const MatX same = space.interpolate([&] {
+    MatX values(space.size(), 2);
+    const std::vector<double> at = space.greville();
+    for (int i = 0; i < space.size(); ++i)
+      values.row(i) = value(space, control, at[static_cast<std::size_t>(i)]);
+    return values;
+  }());
+  EXPECT_LT((same - control).norm(), 1e-9);
+}
+
+// Piegl & Tiller, "The NURBS book", example 7.1: what no polynomial is.
+TEST(Bspline, WithWeightsIsACircle) {
+  BsplineSpace quadratic(2, {0, 1});
+  quadratic.weigh(Vec3(1, std::sqrt(0.5), 1));
+  MatX control(3, 2);
+  control << 1, 0, 1, 1, 0, 1;
+  for (double x = 0; x <= 1; x += 0.125) {
+    const Eigen::RowVectorXd at = value(quadratic, control, x);
+    EXPECT_NEAR(at.norm(), 1, 1e-15);
+    EXPECT_NEAR(at.dot(slope(quadratic, control, x)), 0, 1e-15);
+  }
+}
 
 TEST(Bspline, HasTheKnownValuesOnUniformKnots) {
   const BsplineSpace quadratic(2, {0, 1, 2, 3, 4, 5}), cubic(3, {0, 1, 2, 3, 4, 5});

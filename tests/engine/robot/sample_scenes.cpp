@@ -162,6 +162,14 @@ void disturb(Robot& robot, Equations& equations, Numbers& numbers, double size) 
         Eigen::Map<Vec3>(part) += size * numbers.vec3();
     }
   }
+  for (RodModel::Unknowns& rod : u.rods)
+    for (RodContact& tie : rod.contacts) {
+      if (tie.grip != Grip::kTie || tie.role != ContactRole::kShared) continue;
+      tie.force += 20 * size * numbers.vec3();
+      u.rods[static_cast<std::size_t>(tie.other_rod)]
+          .contacts[static_cast<std::size_t>(tie.partner)]
+          .force = -tie.force;
+    }
   for (Pose& body : u.bodies) {
     body.R = exp_so3(size * numbers.vec3()) * body.R;
     body.p += size * numbers.vec3();
