@@ -88,6 +88,9 @@ class RodContacts {
 
   ContactSample sample();
 
+  /// What is remembered from step to step, beside what the rods do.
+  void visit(Archive& archive);
+
  private:
   struct Obstacle {
     std::string name;

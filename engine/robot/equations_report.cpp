@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the equations say of themselves: names of rows, counts.
+#include "engine/math/state_text.h"
 #include "engine/robot/equations.h"
 
 namespace cprsim {
@@ -52,6 +53,7 @@ void visit(RobotUnknowns& u, Archive& archive) {
     archive(rod.values);
     if (!rod.starts.empty()) archive.resized_doubles(rod.starts, kMost);
     archive.doubles(rod.nodes);
+    visit(rod.contacts, archive);
   }
   for (Pose& body : u.bodies)
     archive(body);
@@ -72,6 +74,44 @@ void Equations::visit(Archive& archive) {
     joint.visit(archive);
   for (RobotRod& rod : robot_.rods)
     rod.model->visit(archive);
+  if (archive.reading()) expect_contacts(unknowns());
+  slip_from_.resize(archive.count(slip_from_.size(), robot_.bodies.size()));
+  for (Pose& from : slip_from_)
+    archive(from);
+}
+
+// A file may say anything: whatever is an index must lead somewhere.
+void Equations::expect_contacts(const RobotUnknowns& u) const {
+  const auto leads = [](auto index, std::size_t size) {
+    return index >= 0 && static_cast<std::size_t>(index) < size;
+  };
+  const auto in_cell = [&](std::size_t rod, std::size_t cell, double xi) {
+    const std::size_t nodes = robot_.rods[rod].model->touching()->contact_grid().size();
+    return xi >= 0 && xi <= 1 && cell < (xi == 0 ? nodes : nodes - 1);
+  };
+  for (std::size_t r = 0; r < u.rods.size(); ++r) {
+    const std::vector<RodContact>& contacts = u.rods[r].contacts;
+    if (contacts.empty()) continue;
+    TouchingRod* side = robot_.rods[r].model->touching();
+    bool sound = side && side->may_touch();
+    for (const RodContact& c : contacts) {
+      if (!sound) break;
+      const bool echo = c.role == ContactRole::kEcho, paired = echo || c.other_rod >= 0;
+      sound = in_cell(r, c.cell, c.xi) && c.body < static_cast<int>(robot_.bodies.size()) &&
+              (paired || c.body >= -1) &&
+              (c.grip == Grip::kTie || echo || leads(c.surface, side->surfaces().size()));
+      if (!sound || !paired) continue;
+      sound = leads(c.other_rod, u.rods.size()) &&
+              leads(c.partner, u.rods[static_cast<std::size_t>(c.other_rod)].contacts.size());
+      if (!sound) break;
+      const RodContact& other = u.rods[static_cast<std::size_t>(c.other_rod)]
+                                    .contacts[static_cast<std::size_t>(c.partner)];
+      sound = other.other_rod == static_cast<int>(r) &&
+              (other.role == ContactRole::kEcho) != echo &&
+              (c.grip == Grip::kTie) == (other.grip == Grip::kTie);
+    }
+    if (!sound) throw StateError("the state has contacts that are not this robot's");
+  }
 }
 
 }  // namespace cprsim

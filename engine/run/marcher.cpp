@@ -267,6 +267,7 @@ void Marcher::visit(Archive& archive) {
   for (Solved& solved : past_) {
     archive(solved.time);
     cprsim::visit(solved.unknowns, archive);
+    if (archive.reading()) equations_.expect_contacts(solved.unknowns);
   }
 }
 

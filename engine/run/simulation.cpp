@@ -135,11 +135,14 @@ void Simulation::Parts::visit(Archive& archive) {
   equations.visit(archive);
   marcher.visit(archive);
   ledger.visit(archive);
+  archive(cushioned);
+  contacts.visit(archive);
   archive(now.solver.iterations);
   archive(now.solver.residual);
   archive(now.solver.step);
   if (!archive.reading()) return;
   before = take_snapshot(robot, nullptr, t);
+  if (contacts.any()) add_rod_contacts(before.contact);
   before.energy = ledger.sample();
   before.solver = now.solver;
   now = before;
@@ -147,15 +150,14 @@ void Simulation::Parts::visit(Archive& archive) {
 }
 
 bool Simulation::has_visitable_state() const {
-  return parts_->free_bodies == nullptr && !parts_->contacts.any() &&
-         parts_->plan.scheme.kind != SchemeKind::kIda;
+  return parts_->free_bodies == nullptr && parts_->plan.scheme.kind != SchemeKind::kIda;
 }
 
 void Simulation::visit(Archive& archive) {
   if (!has_visitable_state())
     throw StateError(
-        "bodies in free flight, rods in contact or steps by ida: what contact or ida remembers "
-        "cannot be saved");
+        "bodies in free flight or steps by ida: what their collisions or ida remember cannot be "
+        "saved");
   parts_->visit(archive);
 }
 

@@ -57,6 +57,7 @@ void Track::visit(Archive& archive) {
 
 void Stepper::visit(Archive& archive) {
   archive(fresh_);
+  archive(cushioned_);
   archive(h_);
   archive(h_last_);
 }

@@ -62,6 +62,8 @@ bool must_stop(Run& run) {
 void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& states) {
   Progress progress(run.console.progress(), run.report.label, simulation.end_time());
   states.start(simulation);
+  const std::string none = states.unavailable(simulation);
+  if (!none.empty()) run.console.warn(none);
   if (simulation.status() != RunStatus::kFailed) {
     const std::string warning = states.start(outputs, simulation);
     if (!warning.empty()) run.console.warn(warning);

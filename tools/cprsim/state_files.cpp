@@ -54,6 +54,12 @@ std::string StateFiles::start(Outputs& outputs, const Simulation& simulation) co
   return {};
 }
 
+std::string StateFiles::unavailable(const Simulation& simulation) const {
+  if (!options_.checkpoint_every || simulation.has_visitable_state()) return {};
+  return "no checkpoints of this scene can be written: it has bodies in free flight, or its steps "
+         "are ida's";
+}
+
 void StateFiles::step(Simulation& simulation, Outputs& outputs) {
   if (options_.hash)
     write_to_stdout(fmt::format("{} {} {}\n", simulation.statistics().steps, simulation.time(),

@@ -28,6 +28,9 @@ class StateFiles {
   /// not those of the state, and begin here; or nothing
   std::string start(Outputs& outputs, const Simulation& simulation) const;
 
+  /// Why no checkpoint can be written though some are asked for; or nothing.
+  std::string unavailable(const Simulation& simulation) const;
+
   /// After each step: writes a checkpoint if one is due.
   void step(Simulation& simulation, Outputs& outputs);
 
