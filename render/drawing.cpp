@@ -15,7 +15,8 @@ namespace {
 constexpr double kLeastRings = 40;     // along a rod
 constexpr double kLargestTurn = 0.09;  // rad; above 0.15 the silhouette of a bent rod shows corners
 
-constexpr double kDiskThickness = 0.12;       // of the radius
+constexpr double kDiskThickness = 0.12;  // of the radius
+const Color kArrowColor(0.93F, 0.45F, 0.06F);
 const Color kDiskColor(0.62F, 0.64F, 0.67F);  // light metal
 
 Pose pose_of(const Snapshot& now, int body) {
@@ -111,6 +112,30 @@ std::optional<Tube> make_disk(const DiskSpec& disk, const Tube& rod) {
     tube.rings.back().position += side;
   }
   return tube;
+}
+
+/// A shaft and a head, as wide as the arrow is long in parts; nothing for no force.
+void add_arrow(const Vec3& from, const Vec3& arrow, std::vector<Tube>& tubes) {
+  constexpr double kShaft = 0.02, kHead = 0.06, kNeck = 0.75;  // of its length
+  const double length = arrow.norm();
+  if (!(length > 0) || !std::isfinite(length) || !from.allFinite()) return;
+  Tube shaft;
+  shaft.radius = kShaft * length;
+  shaft.look.diffuse = kArrowColor.cast<double>();
+  Tube::Ring ring;
+  ring.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), arrow).toRotationMatrix();
+  ring.color = kArrowColor;
+  Tube head = shaft;
+  head.radius = kHead * length;
+  for (const double s : {0., kNeck, 1.}) {
+    ring.position = from + s * arrow;
+    if (s < 1) shaft.rings.push_back(ring);
+    ring.width = s < 1 ? 1 : 0.02;
+    if (s > 0) head.rings.push_back(ring);
+    ring.width = 1;
+  }
+  tubes.push_back(std::move(shaft));
+  tubes.push_back(std::move(head));
 }
 
 std::array<Vec3, 8> corners_of(const TriMesh& mesh) {
@@ -266,6 +291,12 @@ Drawing make_drawing(const Scene& scene, const std::vector<Part>& parts, const S
   }
   // behind all rods, whose tubes have the rods' numbers
   drawing.tubes.insert(drawing.tubes.end(), disks.begin(), disks.end());
+  if (decor.contact_forces) {
+    for (const ContactPoint& at : now.contact.points)
+      add_arrow(at.position, *decor.contact_forces * at.force, drawing.tubes);
+    for (const LinkContact& at : now.contact.links)
+      add_arrow(at.position, *decor.contact_forces * at.force, drawing.tubes);
+  }
   for (std::size_t i = 0; i < decor.traces.size(); ++i) {
     Ribbon ribbon = make_ribbon(decor.traces[i], i, now.time);
     if (ribbon.points.size() > 1) drawing.ribbons.push_back(std::move(ribbon));

@@ -32,7 +32,8 @@ struct Tube {
     Vec3 position;
     Mat3 rotation;  ///< section to world, z = tangent
     Color color;
-    double s = 0;  ///< fraction of the length
+    double s = 0;      ///< fraction of the length
+    double width = 1;  ///< of the section here, over what it is elsewhere
   };
 
   std::vector<Ring> rings;

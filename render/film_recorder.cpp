@@ -133,12 +133,7 @@ void FilmRecorder::Work::draw_all(std::promise<std::string> ready, const std::st
 }
 
 void FilmRecorder::Work::draw(Renderer& renderer) {
-  FrameDecor decor;
-  decor.scene_name = scene.name;
-  decor.show_time = video.show_time;
-  decor.speed = video.speed;
-  decor.overlay = video.overlay;
-  decor.color_by = video.color_by;
+  FrameDecor decor = decor_of(scene, video);
   decor.traces.resize(traced.size());
   SteadyRange range(scene, video.color_by);
   for (int frame = 0;; ++frame) {

@@ -159,6 +159,20 @@ Renderer::Renderer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 Renderer::~Renderer() = default;
 
+FrameDecor decor_of(const Scene& scene, const VideoSpec& video) {
+  FrameDecor decor;
+  decor.scene_name = scene.name;
+  decor.show_time = video.show_time;
+  decor.speed = video.speed;
+  decor.overlay = video.overlay;
+  decor.color_by = video.color_by;
+  decor.color_range = video.color_range;
+  decor.contact_forces = video.contact_forces;
+  for (const TraceSpec& trace : video.traces)
+    decor.traces.push_back({{}, trace.seconds});
+  return decor;
+}
+
 std::unique_ptr<Renderer> Renderer::create(const Scene& scene, int width, int height,
                                            const RenderOptions& options, std::string& why_not) {
   const int finer = std::clamp(options.supersample, 1, 4);

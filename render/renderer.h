@@ -44,7 +44,11 @@ struct FrameDecor {
   std::optional<Vec2>
       color_range;       ///< empty: from this snapshot alone, rounded up to a 1-2-5 number
   double film_time = 0;  ///< s of film, turns an orbiting camera
+  std::optional<double> contact_forces;  ///< as arrows, m/N
 };
+
+/// As a scene's film asks for, its traces still empty.
+FrameDecor decor_of(const Scene& scene, const VideoSpec& video);
 
 /// Draws one scene; lives and is used in one thread (it owns an OpenGL context).
 class Renderer {

@@ -99,7 +99,7 @@ void sweep_whole(const Tube& tube, const View& view, double pixels, TriMesh& mes
     const double scale = std::max(1.0, least / std::max(tube.radius, 1e-12));
     const auto color = to_bytes(ring.color, tube.look.opacity);
     for (const OutlinePoint& q : outline) {
-      const Vec3 p = ring.position + scale * (R.leftCols<2>() * q.p);
+      const Vec3 p = ring.position + scale * ring.width * (R.leftCols<2>() * q.p);
       const Vec3 normal = R.leftCols<2>() * q.n;
       mesh.vertices.push_back({p.cast<float>(), normal.cast<float>(), color});
     }
@@ -145,7 +145,7 @@ void sweep_shadow(const Tube& tube, const Vec3& to_light, TriMesh& mesh) {
   for (const Tube::Ring& ring : tube.rings) {
     const Vec3 across = to_light.cross(ring.rotation.col(2));
     if (across.norm() > 1e-6) side = across.normalized();
-    for (double reach : {tube.radius, -tube.radius}) {
+    for (double reach : {ring.width * tube.radius, -ring.width * tube.radius}) {
       mesh.vertices.push_back(
           {(ring.position + reach * side).cast<float>(), Eigen::Vector3f::UnitZ(), {0, 0, 0, 255}});
     }

@@ -53,7 +53,8 @@ struct VideoSpec {
   ColorBy color_by = ColorBy::kNone;
   std::optional<Vec2> color_range;
   bool show_time = true;
-  std::string overlay;  ///< extra caption
+  std::string overlay;                   ///< extra caption
+  std::optional<double> contact_forces;  ///< as arrows, m/N
 };
 
 struct EnvironmentSpec {

@@ -13,6 +13,9 @@ namespace {
 // the largest step where the scheme chooses it.
 constexpr int kCushionedSteps = 3;
 constexpr double kCushion = 0.1;
+// Steps that shrink below this part of max_step_size before they converge creep up to a contact
+// that they will not get over.
+constexpr double kShortest = 1. / 128;
 // A step of the scheme that touches something and makes more energy is taken by backward Euler
 // instead.
 constexpr double kMostGain = 1e-3;
@@ -176,7 +179,8 @@ void Simulation::Parts::step_dynamic() {
       --failures;
       continue;
     }
-    if (failures >= retries && contacts.any() && !rescued) {
+    const bool creeps = plan.adaptive && step < kShortest * scene.max_step_size;
+    if ((failures >= retries || creeps) && contacts.any() && !rescued) {
       rescue(target);
       failures = -1;
       continue;

@@ -75,6 +75,8 @@ void read_video(Reading& r, const Node& node) {
     video.traces.push_back(std::move(spec));
   }
   if (const Node* color = node.child("color_by")) read_color_by(*color, video);
+  if (const Node* forces = node.child("contact_forces"))
+    video.contact_forces = optional_number(*forces, "scale");
   if (const Node* overlay = node.child("overlay")) {
     video.overlay = overlay->text;
     video.show_time = parse_bool(overlay->value("time")).value_or(true);

@@ -244,6 +244,8 @@ std::vector<ElementRule> output_elements() {
       {"cprsim:video", "trace", "", T::kEmpty, "", '*', S::kSupported,
        "Draws the path of a point."},
       {"cprsim:video", "color_by", "", T::kEmpty, "", '?', S::kSupported, "Colours the rods."},
+      {"cprsim:video", "contact_forces", "", T::kEmpty, "", '?', S::kSupported,
+       "Draws the forces of contacts as arrows, from where they act."},
       {"cprsim:video", "overlay", "", T::kText, "", '?', S::kSupported, "A caption."},
       {"world", "cprsim:record", "", T::kGroup, "", '*', S::kSupported,
        "Writes channels to files."},

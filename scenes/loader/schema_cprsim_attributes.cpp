@@ -141,6 +141,7 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"orbit", "rate", T::kNumber, "rad/s", true, yes, "Speed, in film time."},
       {"cprsim:video", "camera", T::kRef, "", true, yes, "The view."},
       {"cprsim:video", "file", T::kText, "", true, yes, "Name in the output folder."},
+      {"contact_forces", "scale", T::kPositive, "m/N", true, yes, "Length of the arrows."},
       {"cprsim:video", "fps", T::kPositive, "Hz", false, yes, "Frames per second of film."},
       {"cprsim:video", "speed", T::kPositive, "1", false, yes,
        "Simulated seconds per second of film."},

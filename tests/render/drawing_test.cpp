@@ -92,6 +92,29 @@ TEST(Drawing, NumbersThatAreNoneAreLeftOut) {
   EXPECT_TRUE(std::isfinite(largest_value(ColorBy::kBendingMoment, now)));
 }
 
+TEST(Drawing, ForcesOfContactsAreArrowsIfAskedFor) {
+  const Scene scene = six_rods_scene();
+  Snapshot now = six_rods_at(0.7);
+  ContactPoint rod;
+  rod.position = {0.1, 0.2, 0.3};
+  rod.force = {0, 3, 4};
+  LinkContact link;
+  link.force = {2, 0, 0};
+  now.contact.points = {rod, ContactPoint{}};  // the second carries nothing
+  now.contact.links = {link};
+  EXPECT_EQ(drawing_of(scene, now).tubes.size(), 6U);
+  FrameDecor decor;
+  decor.contact_forces = 0.1;
+  const Drawing drawing = drawing_of(scene, now, decor);
+  ASSERT_EQ(drawing.tubes.size(), 10U) << "a shaft and a head each";
+  const Tube &shaft = drawing.tubes[6], &head = drawing.tubes[7];
+  EXPECT_LT((shaft.rings.front().position - rod.position).norm(), 1e-15);
+  EXPECT_LT((head.rings.back().position - rod.position - 0.1 * rod.force).norm(), 1e-15);
+  EXPECT_LT((head.rings.back().rotation.col(2) - Vec3(0, 0.6, 0.8)).norm(), 1e-12);
+  EXPECT_GT(head.radius, shaft.radius);
+  EXPECT_LT(head.rings.back().width, 0.1);
+}
+
 TEST(Drawing, GroundLiesUnderTheFrameAndUnderWhatMayHangDown) {
   Scene scene = six_rods_scene();
   const Snapshot now = six_rods_at(0);

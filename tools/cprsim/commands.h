@@ -19,6 +19,7 @@ int sweep_command(const Words& words);     ///< what accuracy costs in time
 int effects_command(const Words& words);   ///< what each effect changes and costs
 int plot_command(const Words& words);      ///< recordings as pictures
 int export_command(const Words& words);    ///< scenes and recordings in other formats
+int render_command(const Words& words);    ///< films and pictures of what was recorded
 int new_command(const Words& words);       ///< a scene to start from
 int explain_command(const Words& words);   ///< the meaning of a code
 int doctor_command(const Words& words);    ///< what this machine can do

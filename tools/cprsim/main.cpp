@@ -43,7 +43,8 @@ Commands
   solve modes path         equilibria, stability, natural frequencies, folds and branches
   identify workspace       fit values to measurements; what a robot reaches
   sweep effects            what accuracy and what each effect costs in time
-  compare plot export      a run against a reference trajectory; pictures; other formats
+  compare plot export      a run against a reference trajectory; plots; other formats
+  render                   films and pictures of what was recorded, without running again
   new explain doctor       a scene to start from, what a code means, what this machine can do
   completion               words completed by bash, zsh or fish
 
@@ -79,6 +80,7 @@ constexpr std::array kCommands{Command{"run", run_command},
                                Command{"effects", effects_command},
                                Command{"plot", plot_command},
                                Command{"export", export_command},
+                               Command{"render", render_command},
                                Command{"new", new_command},
                                Command{"explain", explain_command},
                                Command{"doctor", doctor_command}};

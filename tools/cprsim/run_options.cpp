@@ -6,9 +6,6 @@
 
 namespace cprsim {
 
-namespace {
-
-/// "shot.png@0.5" in two; an @ that no number follows belongs to the name.
 StillOption to_still(const std::string& text) {
   const std::size_t at = text.rfind('@');
   if (at == std::string::npos) return {text, std::nullopt};
@@ -16,8 +13,6 @@ StillOption to_still(const std::string& text) {
   if (!time || *time < 0) return {text, std::nullopt};
   return {text.substr(0, at), time};
 }
-
-}  // namespace
 
 std::variant<RunOptions, int> parse_run_options(const Words& words) {
   RunOptions options;

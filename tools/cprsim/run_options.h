@@ -16,6 +16,9 @@ struct StillOption {
   std::optional<double> time;
 };
 
+/// "shot.png@0.5" in two; an @ that no number follows belongs to the name.
+StillOption to_still(const std::string& text);
+
 struct RunOptions {
   ConsoleOptions console;
   SceneOptions scene;

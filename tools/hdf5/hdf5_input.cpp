@@ -83,6 +83,28 @@ std::vector<double> Hdf5Input::numbers(const std::string& path) const {
   return numbers;
 }
 
+std::vector<double> Hdf5Input::row(const std::string& path, std::size_t index) const {
+  const std::vector<std::size_t> extents = shape(path);
+  if (extents.empty() || index >= extents[0]) throw Hdf5Error(path + " has too few rows");
+  std::vector<hsize_t> start(extents.size(), 0), count(extents.begin(), extents.end());
+  start[0] = index;
+  count[0] = 1;
+  std::size_t numbers = 1;
+  for (std::size_t k = 1; k < extents.size(); ++k) {
+    if (extents[k] > kMostNumbers) throw Hdf5Error(path + " is unreasonably large");
+    numbers *= extents[k];
+    if (numbers > kMostNumbers) throw Hdf5Error(path + " is unreasonably large");
+  }
+  std::vector<double> row(numbers);
+  if (row.empty()) return row;
+  const Hdf5Id set = open_array(file_, path), space(H5Dget_space(set));
+  checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+  const hsize_t flat = row.size();
+  const Hdf5Id memory(H5Screate_simple(1, &flat, nullptr));
+  checked(H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, row.data()));
+  return row;
+}
+
 std::string Hdf5Input::text(const std::string& path, const std::string& attribute) const {
   const char* const name = attribute.c_str();
   if (checked(H5Aexists_by_name(file_, path.c_str(), name, H5P_DEFAULT)) == 0) return "";

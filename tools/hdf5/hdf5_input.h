@@ -22,6 +22,8 @@ class Hdf5Input {
   std::vector<std::size_t> shape(const std::string& path) const;
   /// All numbers of an array, the last index fastest.
   std::vector<double> numbers(const std::string& path) const;
+  /// Those of one index of the first extent.
+  std::vector<double> row(const std::string& path, std::size_t index) const;
   /// An attribute; empty if there is none, or none that is text.
   std::string text(const std::string& path, const std::string& attribute) const;
 

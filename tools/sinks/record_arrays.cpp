@@ -68,6 +68,10 @@ std::string rod_group(const RodSpec& rod) {
   return "rods/" + rod.name;
 }
 
+std::string link_group(const BodySpec& link) {
+  return "links/" + link.name;
+}
+
 RecordArrays::RecordArrays(const Scene& scene, const std::vector<Channel>& channels,
                            const Snapshot& first) {
   if (first.rods.size() != scene.rods.size())
@@ -88,6 +92,14 @@ RecordArrays::RecordArrays(const Scene& scene, const std::vector<Channel>& chann
     add({group, "n", {nodes, 3}, "N", "world"});
     add({group, "m", {nodes, 3}, "N m", "world"});
   }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].is_static) continue;
+    links_.push_back(b);
+    const std::string group = link_group(scene.bodies[b]);
+    add({group, "position", {3}, "m", "world"});
+    add({group, "quaternion", {4}, "1", "world"});
+  }
+  last_quaternions_.emplace_back(links_.size(), Vec4::Zero());
   std::size_t row_bytes = 0;
   for (const RecordArray& array : list_)
     row_bytes += array.width() * sizeof(double);
@@ -107,6 +119,8 @@ void RecordArrays::append(const Snapshot& snapshot, std::span<const double> valu
     blocks_[1 + i].push_back(values[i]);
   for (std::size_t r = 0; r < grids_.size(); ++r)
     append_rod(snapshot.rods[r], r);
+  for (std::size_t k = 0; k < links_.size(); ++k)
+    append_link(snapshot.bodies.at(links_[k]), k);
   ++rows_;
 }
 
@@ -124,6 +138,12 @@ void RecordArrays::append_rod(const RodSample& rod, std::size_t index) {
     put(block[4], point.force);
     put(block[5], point.moment);
   }
+}
+
+void RecordArrays::append_link(const BodySample& link, std::size_t index) {
+  auto* const block = &blocks_[first_rod_array_ + 6 * grids_.size() + 2 * index];
+  put(block[0], link.X_WB.p);
+  put(block[1], continued(link.X_WB.R, last_quaternions_.back()[index]));
 }
 
 void RecordArrays::clear() {

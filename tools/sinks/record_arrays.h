@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A recording as arrays over time, for HDF5 and NumPy: the instants, a number per channel, and
-// along every rod its shape and what goes through it. Rows are kept until a block is full, which a
-// writer then takes and forgets, so that memory does not grow with the run.
+// along every rod its shape and what goes through it, and where the links are. Rows are kept until
+// a block is full, which a writer then takes and forgets, so that memory does not grow with the
+// run.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@
 namespace cprsim {
 
 struct RecordArray {
-  std::string group;  ///< "", channels, rods/<name>
+  std::string group;  ///< "", channels, rods/<name>, links/<name>
   std::string name;
   std::vector<std::size_t> shape;  ///< of a row; empty: one number
   std::string units;
@@ -57,15 +58,18 @@ class RecordArrays {
  private:
   void add(RecordArray array);
   void append_rod(const RodSample& rod, std::size_t index);
+  void append_link(const BodySample& link, std::size_t index);
 
   std::vector<RecordArray> list_;
   std::vector<std::vector<double>> blocks_;
   std::vector<std::vector<double>> grids_;
-  std::vector<std::vector<Vec4>> last_quaternions_;  ///< x y z w, per rod and point
+  std::vector<std::vector<Vec4>> last_quaternions_;  ///< x y z w, per rod and point; then of links
+  std::vector<std::size_t> links_;                   ///< that may move: indices into Scene::bodies
   std::size_t first_rod_array_ = 0, rows_ = 0, block_rows_ = 0;
 };
 
-/// The group of a rod's arrays.
+/// The group of a rod's arrays, or of a link's.
 std::string rod_group(const RodSpec& rod);
+std::string link_group(const BodySpec& link);
 
 }  // namespace cprsim

@@ -3,16 +3,8 @@
 
 namespace cprsim {
 
-View::View(const Scene& scene, const VideoSpec& video) : scene_(scene), video_(video) {
-  decor_.scene_name = scene.name;
-  decor_.show_time = video.show_time;
-  decor_.speed = video.speed;
-  decor_.overlay = video.overlay;
-  decor_.color_by = video.color_by;
-  decor_.color_range = video.color_range;
-  for (const TraceSpec& trace : video.traces)
-    decor_.traces.push_back({{}, trace.seconds});
-}
+View::View(const Scene& scene, const VideoSpec& video)
+    : scene_(scene), video_(video), decor_(decor_of(scene, video)) {}
 
 void View::follow(const Snapshot& now) {
   for (std::size_t i = 0; i < decor_.traces.size(); ++i) {
