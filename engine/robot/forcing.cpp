@@ -45,9 +45,10 @@ MagneticSources sources_at(const Scene& scene, double t, bool before, double sha
 // and alpha T.
 ThermalStrain thermal_strain_at(const RodSpec& rod, double t, bool before) {
   const TemperatureSpec& heat = *rod.temperature;
-  const double f = heat.has_profile ? heat.profile.evaluate(t, before).value : 1.0,
-               alpha = f * rod.material->thermal_expansion;
-  return {alpha * Vec3(heat.gradient.y(), -heat.gradient.x(), 0), alpha * heat.rise};
+  const double f = heat.has_profile ? heat.profile.evaluate(t, before).value : 1.0;
+  const ThermalExpansion alpha = thermal_expansion(rod);
+  return {f * alpha.bending * Vec3(heat.gradient.y(), -heat.gradient.x(), 0),
+          f * alpha.axial * heat.rise};
 }
 
 TendonPull pull_at(const RobotTendon& tendon, double t, bool before) {

@@ -59,8 +59,10 @@ double magnetic_number(const RobotRod& rod, const Vec3& base, const Scene& scene
 double thermal_number(const RobotRod& rod, const Scene& scene, double EI) {
   const TemperatureSpec& heat = *rod.spec->temperature;
   const double f = heat.has_profile ? peak(heat.profile, scene.simulation.duration) : 1,
-               alpha = f * rod.spec->material->thermal_expansion, L = rod.length,
-               longer = std::abs(alpha * heat.rise), turn = std::abs(alpha) * heat.gradient.norm();
+               L = rod.length;
+  const ThermalExpansion alpha = thermal_expansion(*rod.spec);
+  const double longer = std::abs(f * alpha.axial * heat.rise),
+               turn = std::abs(f * alpha.bending) * heat.gradient.norm();
   const bool held = rod.base_held && rod.tip_held;
   return std::max({longer, turn * L, held ? longer * rod.section.K_se.z() * L * L / EI : 0});
 }

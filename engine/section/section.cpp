@@ -62,6 +62,26 @@ FluidProperties fluid_properties(const DragSpec& drag, double area) {
   return {drag.normal, drag.tangential, drag.added_mass * displaced, displaced};
 }
 
+ThermalExpansion thermal_expansion(const RodSpec& rod) {
+  if (rod.layers.empty()) return {rod.material->thermal_expansion, rod.material->thermal_expansion};
+  double EA = 0, EI = 0;
+  ThermalExpansion sum;
+  const auto add = [&](const SectionSpec& section, const MaterialSpec& material) {
+    double area = 0;
+    Vec3 I;
+    section_geometry(section, area, I);
+    const double E = material.youngs_modulus;
+    EA += E * area;
+    EI += E * I.x();
+    sum.axial += E * area * material.thermal_expansion;
+    sum.bending += E * I.x() * material.thermal_expansion;
+  };
+  add(rod.section, *rod.material);
+  for (const LayerSpec& layer : rod.layers)
+    add(layer.section, layer.material);
+  return {sum.axial / EA, sum.bending / EI};
+}
+
 SectionProperties section_properties(const RodSpec& rod) {
   SectionProperties s;
   section_geometry(rod.section, s.area, s.second_moments);

@@ -50,6 +50,16 @@ void section_geometry(const SectionSpec& section, double& area, Vec3& second_mom
 /// The part of the fluid that the rod's <drag> describes.
 FluidProperties fluid_properties(const DragSpec& drag, double area);
 
+/// Relative, 1/K: of the length where all of the section is warmed, and of bending where a gradient
+/// warms one side. Of layers the averages by their stiffness; where they are alike, both are
+/// theirs.
+struct ThermalExpansion {
+  double axial = 0, bending = 0;
+};
+
+/// Of a rod with a material.
+ThermalExpansion thermal_expansion(const RodSpec& rod);
+
 /// All properties but the fluid's. Layers bonded to a round section strain with it as one: about
 /// the common centre their stiffnesses and inertias add up. Direct stiffnesses replace the sums.
 SectionProperties section_properties(const RodSpec& rod);

@@ -71,7 +71,17 @@ void check_heat(Reading& r) {
       r.report.note("W511", node,
                     "rod '" + rod.name + "' has <temperature>, thermal is not listed");
     if (!feels(scene, rod, Effect::kThermal)) continue;
-    if ((!rod.material || rod.material->thermal_expansion == 0) && !r.report.failed())
+    bool expands = rod.material && rod.material->thermal_expansion != 0, alike = true;
+    for (const LayerSpec& layer : rod.layers) {
+      const double alpha = layer.material.thermal_expansion;
+      expands = expands || alpha != 0;
+      alike = alike && rod.material && alpha == rod.material->thermal_expansion;
+    }
+    if (!alike && rod.sections.size() > 1)
+      r.report.error("E520", node,
+                     "layers that expand unlike the rod '" + rod.name +
+                         "', whose sections vary, are not available in this version");
+    if (!expands && !r.report.failed())
       r.report
           .missing("E503", node,
                    "thermal is listed, rod '" + rod.name + "' has no <thermal_expansion>")

@@ -93,5 +93,20 @@ TEST(LayeredSection, VariesWithItsCore) {
   EXPECT_NEAR(along.at(0.7, 0.7).K_bt.x() - core.at(0.7, 0.7).K_bt.x(), coat, 1e-12 * coat);
 }
 
+// Bonded, both grow by what makes their forces cancel; a gradient likewise, by stiffness in
+// bending.
+TEST(LayeredSection, ExpandsByTheAverageOfItsStiffnesses) {
+  RodSpec rod = steel_rod(kLength, 1e-3);
+  rod.material->thermal_expansion = 12e-6;
+  EXPECT_EQ(thermal_expansion(rod).axial, 12e-6);
+  EXPECT_EQ(thermal_expansion(rod).bending, 12e-6);
+  rod.layers = {layer(1e-3, 2e-3, 1100, 3e9, 1e9)};
+  rod.layers[0].material.thermal_expansion = 80e-6;
+  const double steel = 200e9, coat = 3e9 * 3;  // E A / (pi mm2); E I / (pi / 4 mm4) is 5 coats
+  EXPECT_NEAR(thermal_expansion(rod).axial, (steel * 12e-6 + coat * 80e-6) / (steel + coat), 1e-18);
+  EXPECT_NEAR(thermal_expansion(rod).bending,
+              (steel * 12e-6 + 5 * coat * 80e-6) / (steel + 5 * coat), 1e-18);
+}
+
 }  // namespace
 }  // namespace cprsim
