@@ -140,7 +140,7 @@ class PlanarCheck {
       complain(rod.place, 10,
                "rod '" + rod.name +
                    "' is warmer on one side, which bends it at rest: known in space only");
-    if (scene_.effects.has(Effect::kMagnetic) && !rod.lacks("magnetic")) check_magnets(rod, method);
+    if (scene_.effects.has(Effect::kMagnetic) && !rod.lacks("magnetic")) check_magnets(rod);
     const bool tip_held = rod.tip.joint != EndJoint::kFree;
     if (!end(rod, rod.base, "base") || (tip_held && !end(rod, rod.tip, "tip"))) return;
     const Pose base = in_world(rod.base.at), tip = tip_held ? in_world(rod.tip.at) : base;
@@ -172,9 +172,9 @@ class PlanarCheck {
     return in_world(by_tip ? rod.tip.at : rod.base.at).R;
   }
 
-  void check_magnets(const RodSpec& rod, Method method) {
+  void check_magnets(const RodSpec& rod) {
     if (rod.magnets.empty()) return;
-    if (method == Method::kAuto || method == Method::kShooting)
+    if (by_shooting(rod))
       complain(rod.place, 10,
                "rod '" + rod.name + "' is magnetised, which shooting in a plane does not know",
                "leave <planar> out, or take method=\"strain\" or \"collocation\"");

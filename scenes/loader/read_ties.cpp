@@ -10,7 +10,7 @@ namespace cprsim {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 200;
+constexpr std::size_t kMostPlaces = 200;
 
 int rod_named(Reading& r, const Node& node, const char* key, int scope) {
   const Attribute& name = *node.attribute(key);
@@ -23,12 +23,12 @@ int rod_named(Reading& r, const Node& node, const char* key, int scope) {
 
 std::vector<double> places(Reading& r, const Node& node) {
   const std::vector<double> all = parse_numbers(node.text).value_or(std::vector<double>{});
-  bool inside = !all.empty() && all.size() <= kMostPoints;
+  bool inside = !all.empty() && all.size() <= kMostPlaces;
   for (const double s : all)
     inside = inside && s > 0 && s <= 1;
   if (!inside)
     r.report.bad_text("E306", node,
-                      "a tie has 1 to " + std::to_string(kMostPoints) +
+                      "a tie has 1 to " + std::to_string(kMostPlaces) +
                           " places, fractions of the length above 0 and at most 1");
   return all;
 }
