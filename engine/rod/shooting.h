@@ -333,6 +333,12 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
     Columns opened;  ///< columns at the start of a cell with a contact
     std::vector<Vec3> kept, direction;
     std::unique_ptr<Open> open;  ///< only while contacts are shared
+
+    void visit(Archive& archive) {
+      cprsim::visit(contacts, archive);
+      cprsim::visit(rows, archive);
+      motion.visit(archive);
+    }
   };
 
   std::unique_ptr<Touch> touch_;

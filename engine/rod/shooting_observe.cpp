@@ -277,10 +277,7 @@ void ShootingRod::visit(Archive& archive) {
   archive.doubles(reference_rotations_);
   if (tendons_) tendons_->visit(archive);
   if (disks_) disks_->visit(archive);
-  if (!touch_) return;
-  cprsim::visit(touch_->contacts, archive);
-  cprsim::visit(touch_->rows, archive);
-  touch_->motion.visit(archive);
+  if (touch_) touch_->visit(archive);
 }
 
 RodSample ShootingRod::observe() const {

@@ -90,7 +90,7 @@ TEST_F(Npz, HoldsChannelsAndRods) {
   const auto position = numbers(all.at("rods/rod/position.npy"), 11, {5, 3});
   const auto strain = numbers(all.at("rods/rod/strain.npy"), 11, {5, 6});
   EXPECT_EQ(numbers(all.at("rods/rod/s.npy"), 5, {}), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
-  EXPECT_EQ(all.size(), 1u + 2 + 6 + 1 + 1);
+  EXPECT_EQ(all.size(), 1u + 2 + 6 + 2 + 1 + 1);
   ASSERT_EQ(position.size(), 11u * 15);
   for (std::size_t k = 0; k < 11; ++k) {
     EXPECT_EQ(time[k], static_cast<double>(k) / 25);
