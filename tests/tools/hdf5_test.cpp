@@ -48,13 +48,13 @@ TEST_F(Hdf5, HoldsChannelsAndRodsWithUnitsAndFrames) {
   EXPECT_EQ(file.names("/"), (std::vector<std::string>{"time", "channels", "rods", "links"}));
   EXPECT_EQ(file.names("channels"),
             (std::vector<std::string>{"ball.position.z", "solver.iterations"}));
-  const auto z = file.numbers("channels/ball.position.z"),
+  const auto height = file.numbers("channels/ball.position.z"),
              ball = file.numbers("links/ball/position");
-  ASSERT_EQ(ball.size(), 3 * z.size());
-  for (std::size_t k = 0; k < z.size(); ++k)
-    EXPECT_EQ(ball[3 * k + 2], z[k]);
+  ASSERT_EQ(ball.size(), 3 * height.size());
+  for (std::size_t k = 0; k < height.size(); ++k)
+    EXPECT_EQ(ball[3 * k + 2], height[k]);
   EXPECT_EQ(file.row("links/ball/position", 2), std::vector<double>(&ball[6], &ball[9]));
-  EXPECT_THROW(file.row("links/ball/position", z.size()), Hdf5Error);
+  EXPECT_THROW(file.row("links/ball/position", height.size()), Hdf5Error);
   EXPECT_EQ(file.names("rods/rod"), (std::vector<std::string>{"length", "position", "quaternion",
                                                               "strain", "n", "m", "s"}));
   EXPECT_EQ(file.shape("time"), Shape{11});
