@@ -7,7 +7,7 @@
 #include "engine/study/modes.h"
 #include "engine/study/path.h"
 #include "tests/bench/reference_cases.h"
-#include "tests/support/robots.h"
+#include "tests/support/column_and_frame.h"
 
 namespace cprsim {
 namespace {
@@ -65,19 +65,7 @@ ReferenceCase twisted_shaft() {
             scene.loads.clear();
             const RodSpec given = rod_of(1, 1, 1, 0.8);
             scene.rods[0].stiffness = given.stiffness;
-            BodySpec motor;
-            motor.name = "motor";
-            scene.bodies.push_back(motor);
-            scene.rods[0].base.at = {1, Pose{}};
-            JointSpec axle;
-            axle.name = "axle";
-            axle.kind = JointKind::kContinuous;
-            axle.child = 1;
-            scene.joints.push_back(axle);
-            DriveSpec drive;
-            drive.joint = 1;
-            drive.profile.terms.push_back({});
-            scene.drives.push_back(drive);
+            turn_base(scene).profile.terms.push_back({});
             return events_on_path(scene, m, 1, nullptr, 15, false, {8.98681891582 / 0.8});
           },
           2e-5};
@@ -92,35 +80,6 @@ ReferenceCase strip() {
             const Parameter force = force_of(0);
             return events_on_path(scene, m, 1, &force, 6, false, {4.05962740575});
           }};
-}
-
-/// Two legs of 120 at a right angle between hinges, pressed on the horizontal one 24 from the
-/// corner.
-Scene lees_frame() {
-  Scene scene;
-  switch_on(scene, {Effect::kExtension, Effect::kShear});
-  BodySpec corner;
-  corner.name = "corner";
-  corner.X_WB.p = {0, 0, 120};
-  scene.bodies.push_back(corner);
-  RodSpec leg = steel_rod(120, 1);
-  leg.section.shape = SectionShape::kRectangle;
-  leg.section.size = {2, 3};
-  leg.material->youngs_modulus = 7.2e6;
-  leg.material->shear_modulus = 7.2e6 / 2.6;
-  const Mat3 along_x = Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()).toRotationMatrix();
-  leg.base.joint = EndJoint::kRevolute;
-  leg.base.axis = Vec3::UnitY();
-  leg.tip.joint = EndJoint::kFixed;
-  leg.tip.at.body = 0;
-  scene.rods.push_back(leg);
-  std::swap(leg.base, leg.tip);
-  leg.base.at.X_BF.R = along_x;
-  leg.tip.at.X_BF = {along_x, {120, 0, 120}};
-  leg.name = "beam";
-  scene.rods.push_back(leg);
-  add_load(scene, 0.2, Vec3::Zero()).rod = 1;
-  return scene;
 }
 
 ReferenceCase frame_folds() {

@@ -7,8 +7,8 @@
 #include "engine/solve/newton.h"
 #include "engine/study/stability.h"
 #include "tests/stability/measure.h"
+#include "tests/support/column_and_frame.h"
 #include "tests/support/elastica.h"
-#include "tests/support/robots.h"
 
 namespace cprsim {
 namespace {
@@ -86,23 +86,11 @@ TEST(Turns, TenTwistsPassPiWithoutASpike) {
   Scene scene = column(kLength, 1e-3, EndJoint::kFixed, EndJoint::kFixed, -5e4);
   const RodSpec& rod = scene.rods[0];
   const double GJ = rod.material->shear_modulus * kPi / 2 * std::pow(rod.section.size.x(), 4);
-  BodySpec motor;
-  motor.name = "motor";
-  scene.bodies.push_back(motor);
-  scene.rods[0].base.at = {1, Pose{}};
-  JointSpec axle;
-  axle.name = "axle";
-  axle.kind = JointKind::kContinuous;
-  axle.child = 1;
-  scene.joints.push_back(axle);
-  DriveSpec drive;
-  drive.joint = 1;
   ProfileTerm ramp;
   ramp.shape = ShapeOfTime::kRamp;
   ramp.to = 20 * kPi;
   ramp.end = 1;
-  drive.profile.terms.push_back(ramp);
-  scene.drives.push_back(drive);
+  turn_base(scene).profile.terms.push_back(ramp);
   scene.solver.points = 40;
   scene.solver.step = 0.01;
   scene.simulation.mode = Mode::kQuasistatic;

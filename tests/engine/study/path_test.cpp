@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/column_and_frame.h"
 #include "tests/support/elastica.h"
-#include "tests/support/robots.h"
 
 namespace cprsim {
 namespace {
@@ -178,43 +178,12 @@ TEST(Path, CriticalMotionOfTheColumnIsASineHalfWave) {
   }
 }
 
-/// Two legs of 120 at a right angle between hinges, pressed on the horizontal one 24 from the
-/// corner.
-Scene lees_frame() {
-  Scene scene;
-  switch_on(scene, {Effect::kExtension, Effect::kShear});
-  BodySpec corner;
-  corner.name = "corner";
-  corner.X_WB.p = {0, 0, 120};
-  scene.bodies.push_back(corner);
-  RodSpec leg = steel_rod(120, 1);
-  leg.section.shape = SectionShape::kRectangle;
-  leg.section.size = {2, 3};
-  leg.material->youngs_modulus = 7.2e6;
-  leg.material->shear_modulus = 7.2e6 / 2.6;
-  const Mat3 along_x = Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()).toRotationMatrix();
-  leg.base.joint = EndJoint::kRevolute;
-  leg.base.axis = Vec3::UnitY();
-  leg.tip.joint = EndJoint::kFixed;
-  leg.tip.at.body = 0;
-  scene.rods.push_back(leg);
-  std::swap(leg.base, leg.tip);
-  leg.base.at.X_BF.R = along_x;
-  leg.tip.at.X_BF = {along_x, {120, 0, 120}};
-  leg.name = "beam";
-  scene.rods.push_back(leg);
-  LoadSpec load;
-  load.rod = 1;
-  load.rod_s = 0.2;
-  scene.loads.push_back(load);
-  scene.solver.points = 8;
-  return scene;
-}
-
 // Reference: arc length on a shooting map, independent of this program, shear coefficient 1;
 // literature 18.55 and -9.4 EI/L² (Lee, Manuel, Rossow 1968).
 TEST(Path, LeesFrameSnapsBack) {
-  StaticStudy study(lees_frame());
+  Scene scene = lees_frame();
+  scene.solver.points = 8;
+  StaticStudy study(scene);
   ASSERT_TRUE(study.solve().converged());
   PathOptions options;
   options.largest_step = 0.4;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/so3.h"
-#include "tests/support/robots.h"
+#include "tests/support/column_and_frame.h"
 
 namespace cprsim {
 namespace {
@@ -80,19 +80,7 @@ TEST(Stability, TwistedShaftClampedAtBothEnds) {
   // the base is turned, in steps that Newton's method follows
   const auto verdict = [&](double angle) {
     Scene turned = scene;
-    BodySpec motor;
-    motor.name = "motor";
-    turned.bodies.push_back(motor);
-    turned.rods[0].base.at = {1, Pose{}};
-    JointSpec axle;
-    axle.name = "axle";
-    axle.kind = JointKind::kContinuous;
-    axle.child = 1;
-    turned.joints.push_back(axle);
-    DriveSpec drive;
-    drive.joint = 1;
-    drive.profile.terms.push_back({});
-    turned.drives.push_back(drive);
+    turn_base(turned).profile.terms.push_back({});
     StaticStudy study(turned);
     EXPECT_TRUE(study.solve().converged());
     const int steps = static_cast<int>(std::ceil(angle / 0.5));
