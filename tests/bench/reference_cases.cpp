@@ -5,7 +5,10 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
+#include <utility>
 
+#include "scenes/loader/load.h"
 #include "tests/support/robots.h"
 
 namespace cprsim {
@@ -22,6 +25,35 @@ int unknowns_of(const Robot& robot) {
   for (const RobotRod& rod : robot.rods)
     n += rod.model->unknown_count();
   return n;
+}
+
+Scene gallery_scene(const std::string& name, Method method, int elements) {
+  LoadResult loaded = load_scene(CPRSIM_SOURCE_DIR "/scenes/" + name + ".xml");
+  if (!loaded.scene) throw std::runtime_error("cannot read " + name);
+  SolverSpec& solver = loaded.scene->solver;
+  solver.method = method;
+  if (method != Method::kShooting) {
+    solver.points.reset();
+    solver.integrator.reset();
+    solver.elements = elements;
+    solver.order = 3;
+    solver.degree = 4;
+  }
+  return std::move(*loaded.scene);
+}
+
+CaseAnswer run_scene(const Scene& scene, const std::function<double(const Snapshot&)>& measure) {
+  Simulation simulation(scene);
+  CaseAnswer answer;
+  answer.unknowns = unknowns_of(simulation.robot());
+  const Snapshot end = run_to_end(simulation);
+  answer.found = simulation.status() == RunStatus::kDone;
+  if (answer.found)
+    answer.error = measure(end);
+  else
+    std::fprintf(stderr, "%s: t = %g: %s\n", method_name(scene.solver.method), simulation.time(),
+                 simulation.failure().c_str());
+  return answer;
 }
 
 CaseAnswer at_rest(Scene scene, Method method, double length,
@@ -60,17 +92,7 @@ CaseAnswer in_motion(Scene scene, Method method, double length, double tolerance
   if (!scene.solver.residual_tolerance) scene.solver.residual_tolerance = 1e-11;
   scene.solver.scheme = SchemeKind::kEsdirk43;
   if (!scene.solver.step) scene.solver.tolerance = tolerance;
-  Simulation simulation(scene);
-  CaseAnswer answer;
-  answer.unknowns = unknowns_of(simulation.robot());
-  const Snapshot end = run_to_end(simulation);
-  answer.found = simulation.status() == RunStatus::kDone;
-  if (answer.found)
-    answer.error = measure(end);
-  else
-    std::fprintf(stderr, "%s: t = %g: %s\n", method_name(method), simulation.time(),
-                 simulation.failure().c_str());
-  return answer;
+  return run_scene(scene, measure);
 }
 
 RodSpec rod_of(double length, double bending_x, double bending_y, double torsion, double axial,

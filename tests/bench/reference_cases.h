@@ -64,6 +64,13 @@ CaseAnswer loaded_in_steps(Scene scene, Method method, double length, int steps,
 CaseAnswer in_motion(Scene scene, Method method, double length, double tolerance,
                      const std::function<double(const Snapshot&)>& measure);
 
+/// A scene of the gallery: shooting as it says, the others in so many elements, of order 3 (strain
+/// basis) and degree 4. @throws std::runtime_error if it cannot be read
+Scene gallery_scene(const std::string& name, Method method, int elements);
+
+/// What is measured when the scene's time is over.
+CaseAnswer run_scene(const Scene& scene, const std::function<double(const Snapshot&)>& measure);
+
 /// A straight rod of given stiffnesses, clamped in the world; its section is of no matter.
 RodSpec rod_of(double length, double bending_x, double bending_y, double torsion, double axial = 0,
                double shear = 0);

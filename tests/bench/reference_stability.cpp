@@ -120,6 +120,25 @@ ReferenceCase right_angle_frame() {
           }};
 }
 
+ReferenceCase localised_buckle() {
+  return {"B07",
+          "long rod turned 27 times, its ends 3 % nearer: its buckle is local",
+          "moment and tension of the clamps",
+          "closed form of an infinitely long rod",
+          [](Method m) {
+            Scene scene = gallery_scene("rods/localised_buckle", m, 12);
+            scene.solver.order = 6;
+            scene.solver.degree = 6;
+            if (m == Method::kCollocation) scene.solver.elements = 60;
+            return run_scene(scene, [](const Snapshot& s) {
+              const RodPoint& clamp = s.rods[0].points.front();
+              return std::max(std::abs(clamp.moment.z() / -1.3253831235 - 1),
+                              std::abs(clamp.force.z() / 0.390183586179 - 1));
+            });
+          },
+          1e-4};
+}
+
 CaseAnswer frequencies(Scene scene, Method method, double length, int every,
                        const std::vector<double>& expected) {
   cut(scene, method, length);
@@ -172,8 +191,9 @@ ReferenceCase tip_mass_modes() {
 }  // namespace
 
 std::vector<ReferenceCase> stability_cases() {
-  return {shearing_column(),   twisted_shaft(),    strip(),         frame_folds(),
-          right_angle_frame(), timoshenko_modes(), tip_mass_modes()};
+  return {shearing_column(),  twisted_shaft(),    strip(),
+          frame_folds(),      localised_buckle(), right_angle_frame(),
+          timoshenko_modes(), tip_mass_modes()};
 }
 
 }  // namespace cprsim
