@@ -53,19 +53,36 @@ std::vector<char> flying_bodies(const Scene& scene) {
 }
 
 std::vector<char> bodies_among_rods(const Scene& scene) {
-  std::vector<char> among(scene.bodies.size(), 0);
+  const std::size_t n = scene.bodies.size();
+  std::vector<char> among(n, 0);
   if (!scene.effects.has(Effect::kContact) || scene.rods.empty() ||
       scene.simulation.mode != Mode::kDynamic)
     return among;
   const std::vector<char> flying = flying_bodies(scene);
-  for (std::size_t b = 0; b < among.size(); ++b) {
+  const auto can = [&](std::size_t b) {
     const BodySpec& body = scene.bodies[b];
-    if (!flying[b] || body.linear_decay > 0 || body.angular_decay > 0 ||
-        !touched_by_rods(scene, body))
-      continue;
+    return flying[b] && !(body.linear_decay > 0) && !(body.angular_decay > 0);
+  };
+  const auto held = [&](std::size_t b) { return !flying[b] && !scene.bodies[b].is_static; };
+  std::vector<std::size_t> next;
+  for (std::size_t b = 0; b < n; ++b) {
+    if (!can(b)) continue;
+    bool meets = touched_by_rods(scene, scene.bodies[b]);
+    for (std::size_t other = 0; other < n && !meets; ++other)
+      meets = held(other) && may_touch(scene.bodies[b], scene.bodies[other]);
+    if (!meets) continue;
     among[b] = 1;
-    for (std::size_t other = 0; other < among.size(); ++other)
-      if (other != b && may_touch(body, scene.bodies[other])) among[b] = 0;
+    next.push_back(b);
+  }
+  // what touches one of them is one of them
+  while (!next.empty()) {
+    const std::size_t b = next.back();
+    next.pop_back();
+    for (std::size_t other = 0; other < n; ++other) {
+      if (among[other] || !can(other) || !may_touch(scene.bodies[b], scene.bodies[other])) continue;
+      among[other] = 1;
+      next.push_back(other);
+    }
   }
   return among;
 }

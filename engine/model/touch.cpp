@@ -53,13 +53,26 @@ std::string why_not_with_rod(const Scene& scene, const ContactParty& link, const
   return {};
 }
 
+/// The part of a scoped name before its last "::".
+std::string model_of(const std::string& name) {
+  const std::size_t at = name.rfind("::");
+  return at == std::string::npos ? std::string() : name.substr(0, at);
+}
+
 std::string why_not_links(const Scene& scene, const ContactPair& pair) {
   const std::vector<char> flying = flying_bodies(scene);
   const auto flies = [&](const ContactParty& p) {
     return flying[static_cast<std::size_t>(p.index)] != 0;
   };
-  if (!flies(pair[0]) && !flies(pair[1]))
-    return "of two links one has to fly freely, held by no joint and no rod";
+  if (flies(pair[0]) || flies(pair[1])) return {};
+  const BodySpec &a = body_of(scene, pair[0]), &b = body_of(scene, pair[1]);
+  if (a.is_static && b.is_static) return "of two links one has to move";
+  if (model_of(a.name) == model_of(b.name))
+    return "links of one model that joints or rods hold do not touch each other";
+  for (const JointSpec& joint : scene.joints)
+    if ((joint.parent == pair[0].index && joint.child == pair[1].index) ||
+        (joint.parent == pair[1].index && joint.child == pair[0].index))
+      return "joint '" + joint.name + "' joins them";
   return {};
 }
 

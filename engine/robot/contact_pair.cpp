@@ -75,6 +75,22 @@ MovingBody moving_body(const RigidBody& body, const StageRates& rates, const Pos
   return out;
 }
 
+PointMotion::PointMotion(const MovingBody& body, const Vec3& y) {
+  const Vec3 arm = y - body.X.p;
+  if (body.rates) {
+    v = body.v + body.w.cross(arm);
+    by_y = hat(body.w);
+    by_p = body.v_by_p * Mat3::Identity() - by_y;
+    by_phi = -hat(arm) * body.w_by_phi;
+    return;
+  }
+  const Mat3 back = body.X_0.R * body.X.R.transpose();
+  v = y - body.X_0.p - back * arm;
+  by_y = Mat3::Identity() - back;
+  by_p = back;
+  by_phi = -back * hat(arm);
+}
+
 PairRows rows_with_world(const RodContact& contact, const Surface& surface, double radius,
                          const ContactEnds& ends, const ContactScale& scale) {
   const ContactRows rows = contact_rows(contact, surface, radius, ends, scale);
@@ -94,33 +110,18 @@ PairRows rows_with_body(const RodContact& contact, const Surface& surface, const
   const Vec3 x = contact_point(contact.xi, ends.h, ends.node), y = x + contact.lever;
   rows.at = distance_to(surface, body.X * surface.X_WC, x);
   const Vec3& n = rows.at.n;
-  // velocity of the body's point at y and its derivatives
-  Vec3 v;
-  Mat3 v_by_y, v_by_phi, v_by_p;
-  const Vec3 arm = y - body.X.p;
-  if (body.rates) {  // (1)
-    v = body.v + body.w.cross(arm);
-    v_by_y = hat(body.w);
-    v_by_p = body.v_by_p * Mat3::Identity() - v_by_y;
-    v_by_phi = -hat(arm) * body.w_by_phi;
-  } else {  // (2)
-    const Mat3 back = body.X_0.R * body.X.R.transpose();
-    v = y - body.X_0.p - back * arm;
-    v_by_y = Mat3::Identity() - back;
-    v_by_p = back;
-    v_by_phi = -back * hat(arm);
-  }
-  rows.slip = contact_velocity(contact.xi, contact.lever, ends) - v;
+  const PointMotion under(body, y);
+  rows.slip = contact_velocity(contact.xi, contact.lever, ends) - under.v;
   const GripRows row = grip_rows(contact, rows.at.d - radius - contact.sunk, n, rows.slip, scale);
   rows.value = row.value;
   rows.by_force = row.by_force;
   const Mat3 by_distance = row.by_gap * n.transpose() + row.by_n * rows.at.H;
   rows.by_ends =
-      by_ends_of(contact.xi, contact.lever, ends, by_distance - row.by_u * v_by_y, row.by_u);
+      by_ends_of(contact.xi, contact.lever, ends, by_distance - row.by_u * under.by_y, row.by_u);
   // the body's motion carries the normal along: dn = H (dx - dp - phi × (x - p)) + phi × n
   rows.by_body.leftCols<3>() =
-      by_distance * hat(x - body.X.p) - row.by_n * hat(n) - row.by_u * v_by_phi;
-  rows.by_body.rightCols<3>() = -by_distance - row.by_u * v_by_p;
+      by_distance * hat(x - body.X.p) - row.by_n * hat(n) - row.by_u * under.by_phi;
+  rows.by_body.rightCols<3>() = -by_distance - row.by_u * under.by_p;
   return rows;
 }
 

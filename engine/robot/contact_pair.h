@@ -31,6 +31,15 @@ struct MovingBody {
   Mat3 w_by_phi = Mat3::Zero();
 };
 
+/// Velocity, or without rates the way (2), of the point of a body that is at y, with its
+/// derivatives by y and by the body's (phi, dp) while y stays.
+struct PointMotion {
+  Vec3 v;
+  Mat3 by_y, by_phi, by_p;
+
+  PointMotion(const MovingBody& body, const Vec3& y);
+};
+
 MovingBody moving_body(const RigidBody& body, const StageRates& rates, const Pose& X_0);
 
 /// Rows with their derivatives by the ends' (phi_0, p_0, phi_1, p_1), by the body's (phi, dp) or

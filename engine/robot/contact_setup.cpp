@@ -8,7 +8,8 @@
 
 namespace cprsim {
 
-RodContacts::RodContacts(Robot& robot) : robot_(robot) {
+RodContacts::RodContacts(Robot& robot)
+    : robot_(robot), bodies_(robot, [this](const ShapeSpec& shape) { return mesh_of(shape); }) {
   const Scene& scene = *robot.scene;
   friction_ = scene.effects.has(Effect::kFriction);
   const bool contact = scene.effects.has(Effect::kContact),

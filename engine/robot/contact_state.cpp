@@ -8,6 +8,7 @@ namespace cprsim {
 void RodContacts::visit(Archive& archive) {
   archive(eased_);
   archive(lagged_);
+  bodies_.visit(archive);
   for (Rod& rod : rods_) {
     Scan& scan = rod.scan;
     bool scanned = !scan.nodes.empty();

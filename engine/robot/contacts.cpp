@@ -170,7 +170,7 @@ void RodContacts::update_echoes() {
 
 bool RodContacts::revise(int round) {
   const PhaseTimer timer(any() ? robot_.clock : nullptr, Phase::kContact);
-  bool again = false;
+  bool again = bodies_.revise(round);
   std::vector<Change> changes;
   for (std::size_t r = 0; r < rods_.size(); ++r) {
     Rod& rod = rods_[r];
@@ -209,7 +209,7 @@ bool RodContacts::ease() {
   constexpr int kEasedSteps = 20;
   if (left_ == 0) return false;  // statics is led to where it rests
   eased_ = kEasedSteps;
-  bool any = false;
+  bool any = bodies_.ease(kEasedSteps);
   for (Rod& rod : rods_)
     for (RodContact& contact : rod.side->contacts()) {
       contact.may_rest = true;
@@ -220,7 +220,7 @@ bool RodContacts::ease() {
 
 bool RodContacts::hold() {
   if (left_ == 0) return false;
-  bool any = false;
+  bool any = bodies_.hold();
   for (Rod& rod : rods_)
     for (RodContact& contact : rod.side->contacts()) {
       if (contact.grip != Grip::kSlip) continue;
@@ -231,7 +231,8 @@ bool RodContacts::hold() {
 }
 
 bool RodContacts::touching() const {
-  return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return touches(rod); });
+  return bodies_.touching() ||
+         std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return touches(rod); });
 }
 
 void RodContacts::begin_step() {
@@ -239,6 +240,7 @@ void RodContacts::begin_step() {
   left_ = 0;
   rates_ = false;
   eased_ = std::max(0, eased_ - 1);
+  if (bodies_.any()) bodies_.begin_step(lagged_);
   for (Rod& rod : rods_) {
     rod.before = rod.side->contacts();
     rod.begun = rod.side->contact_nodes();
@@ -260,12 +262,21 @@ void RodContacts::begin_step() {
 void RodContacts::begin_stage(double since) {
   left_ = recovery_ > 0 ? std::exp(-since / recovery_) : 0;
   rates_ = true;
+  if (bodies_.any()) bodies_.begin_stage(left_, since);
   for (Rod& rod : rods_)
     for (RodContact& contact : rod.side->contacts()) {
       if (contact.role == ContactRole::kEcho) continue;
       contact.sunk = sunk(rod, contact);
       contact.lag = rod.obstacles[static_cast<std::size_t>(contact.surface)].lag;
     }
+}
+
+void RodContacts::refresh() {
+  bodies_.refresh();
+  if (lagged_) return;
+  for (Rod& rod : rods_)
+    for (RodContact& contact : rod.side->contacts())
+      contact.bound = -1;
 }
 
 bool RodContacts::changed(const Rod& rod, bool soft_too) {
@@ -296,15 +307,17 @@ bool RodContacts::changed(const Rod& rod, bool soft_too) {
 }
 
 bool RodContacts::changed() const {
-  return std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return changed(rod, true); });
+  return bodies_.changed() ||
+         std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return changed(rod, true); });
 }
 
 bool RodContacts::struck() const {
-  return std::any_of(rods_.begin(), rods_.end(),
-                     [](const Rod& rod) { return changed(rod, false); });
+  return bodies_.changed() || std::any_of(rods_.begin(), rods_.end(),
+                                          [](const Rod& rod) { return changed(rod, false); });
 }
 
 bool RodContacts::leapt() const {
+  if (bodies_.leapt()) return true;
   for (const Rod& rod : rods_) {
     if (2 * moved(rod, rod.start) < rod.start.clearance) continue;
     const std::vector<RodContact>& contacts = rod.side->contacts();
@@ -341,11 +354,12 @@ std::string RodContacts::overlap() {
                                              : "in the way of '" + rod.obstacles[o].name + "'");
       }
   }
-  return {};
+  return bodies_.overlap();
 }
 
 ContactSample RodContacts::sample() {
   ContactSample out;
+  bodies_.add_to(out);
   for (Rod& rod : rods_) {
     if (far_away(rod)) continue;
     scan(rod);

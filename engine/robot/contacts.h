@@ -18,12 +18,15 @@
 // to the point at arc length s, what lies beyond s + a, a being a few diameters or more than a
 // cell, so that each pair of parts is looked at once. A rod that is bent no tighter than twice its
 // radius does not come near itself within a.
+//
+// Bodies touch each other by engine/robot/body_contacts.h, which is part of this.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "engine/robot/body_contacts.h"
 #include "engine/robot/robot.h"
 #include "engine/run/snapshot.h"
 
@@ -41,8 +44,8 @@ class RodContacts {
   /// Gives the robot's rods what the scene lets them touch. Without the effect: nothing.
   explicit RodContacts(Robot& robot);
 
-  /// Whether any rod may touch anything.
-  bool any() const { return !rods_.empty(); }
+  /// Whether anything may touch anything.
+  bool any() const { return !rods_.empty() || bodies_.any(); }
 
   /// After a solve. @param round counts the revisions of this solve: late ones change one point at
   /// a time, so that no cycle goes on. @return whether anything changed and is to be solved again
@@ -58,7 +61,7 @@ class RodContacts {
   /// whether anything slipped
   bool hold();
 
-  /// Whether any rod touches something now.
+  /// Whether anything touches now.
   bool touching() const;
 
   /// A step or a static increment begins here. What has sunk is to be put back at once.
@@ -71,6 +74,9 @@ class RodContacts {
   /// From the next step on friction is bounded by what pressed when the step began, and what comes
   /// is smooth: no less dissipative than Coulomb's law, and easier to solve.
   void lag_friction(bool on) { lagged_ = on; }
+
+  /// What the step asks of contacts, whichever guess they came with.
+  void refresh();
 
   void set_recovery_time(double time) { recovery_ = time; }
 
@@ -212,7 +218,8 @@ class RodContacts {
 
   Robot& robot_;
   std::vector<std::unique_ptr<MeshDistance>>
-      meshes_;              ///< of the scene's, those that rods may touch
+      meshes_;  ///< of the scene's, those that something may touch
+  BodyContacts bodies_;
   std::vector<int> index_;  ///< Robot::rods → rods_
   bool friction_ = false, lagged_ = false;
   bool rates_ = false;   ///< in a step of a dynamic run

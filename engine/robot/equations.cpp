@@ -115,7 +115,7 @@ void Equations::accept_equilibrium(double t) {
   equilibrium_time_ = t;
   for (Joint& joint : robot_.joints)
     joint.accept(body_pose(joint.parent), body_pose(joint.child));
-  if (robot_.rods_meet) note_bodies();
+  if (robot_.rods_meet || !robot_.probes.empty()) note_bodies();
 }
 
 void Equations::accept_contacts() {
@@ -285,6 +285,7 @@ void Equations::evaluate_bodies(ProblemResidual& r) {
   for (std::size_t b = 0; b < wrench_.size(); ++b)
     wrench_[b] = body_rows(b);
   if (robot_.rods_meet) evaluate_pairs(r);
+  if (!robot_.probes.empty()) evaluate_body_contacts(r);
   add_body_loads();
   add_rod_wrenches();
   add_joint_wrenches();

@@ -5,7 +5,7 @@
 //   unknowns                                   rows
 //   body b: (phi, dp) of its centre of mass    Newton-Euler (moment, force)
 //   joint j: lambda (6), q where unknown       closure (6), effort
-//   contact c between what moves: force (3)    engine/robot/contact_pair.h
+//   contact c between what moves: force (3)    engine/robot/contact_pair.h, body_contact.h
 //   rod r: its own                             its own; condensed to z (6) with T z + ... = 0 and
 //   the wrenches on
 //                                              its bodies (engine/rod/rod_model.h)
@@ -32,6 +32,7 @@ struct RobotUnknowns {
   std::vector<Pose> bodies;
   std::vector<Vec3> joint_q;
   std::vector<Vec6> joint_lambda;
+  std::vector<BodyContact> body_contacts;
 };
 
 void visit(RobotUnknowns& u, Archive& archive);
@@ -129,7 +130,7 @@ class Equations final : public Problem {
 
  private:
   struct Worst {
-    enum class Kind { kRod, kBody, kJoint, kContact } kind = Kind::kRod;
+    enum class Kind { kRod, kBody, kJoint, kContact, kBodyContact } kind = Kind::kRod;
     int index = 0, row = 0;
   };
 
@@ -152,6 +153,10 @@ class Equations final : public Problem {
   void find_pairs();
   void evaluate_pairs(ProblemResidual& r);
   int number_pairs(int offset);
+  int number_body_contacts(int offset);
+  void evaluate_body_contacts(ProblemResidual& r);
+  void assemble_body_contacts();
+  std::string body_contact_name(std::size_t contact) const;
   void assemble_pairs();
   void hold_still_bodies();
   void assemble_open_forces(std::size_t rod);
@@ -228,8 +233,10 @@ class Equations final : public Problem {
   std::vector<Vec3> tie_gap_;  ///< of the ties among pairs_, in their order
   std::vector<Pose> marked_;
   std::vector<Pair> pairs_;
-  std::vector<char> flies_;      ///< bodies that nothing holds
-  std::vector<Pose> slip_from_;  ///< bodies, where slip counts from without rates
+  std::vector<BodyContactRows> touches_;  ///< of Robot::body_contacts
+  int first_touch_ = 0;                   ///< where the unknowns of their forces begin
+  std::vector<char> flies_;               ///< bodies that nothing holds
+  std::vector<Pose> slip_from_;           ///< bodies, where slip counts from without rates
   Worst worst_;
   double worst_size_ = 0;
 

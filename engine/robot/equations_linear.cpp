@@ -73,7 +73,7 @@ bool Equations::condense(bool keep_all) {
     if (rod.tip_held && rod.tip.body >= 0)
       e.z_B.topLeftCorner<N, N>() = -lu.solve(MatN(c.T_B.topLeftCorner<N, N>()));
   }
-  size_ = robot_.rods_meet ? number_pairs(offset) : offset;
+  size_ = number_body_contacts(robot_.rods_meet ? number_pairs(offset) : offset);
   return true;
 }
 
@@ -230,7 +230,8 @@ void Equations::assemble() {
   else
     assemble_parts<6>();
   if (!pairs_.empty()) assemble_pairs();
-  if (robot_.rods_meet) hold_still_bodies();
+  if (!robot_.body_contacts.empty()) assemble_body_contacts();
+  if (robot_.rods_meet || !robot_.probes.empty()) hold_still_bodies();
 }
 
 VecX Equations::column_units() const {
@@ -250,6 +251,11 @@ VecX Equations::column_units() const {
         u[at + N + freedom.unknown] = length;
   }
   if (!pairs_.empty()) pair_units(u);
+  for (std::size_t k = 0; k < robot_.body_contacts.size(); ++k) {
+    const BodyProbe& probe = robot_.probes[robot_.body_contacts[k].probe];
+    u.segment<3>(first_touch_ + 3 * static_cast<Eigen::Index>(k))
+        .setConstant(std::max(force_unit(probe.body), force_unit(probe.other)));
+  }
   return u;
 }
 

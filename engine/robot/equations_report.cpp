@@ -25,6 +25,8 @@ std::string Equations::worst_row() const {
              (robot_.plane && worst_.row < 3 ? kPlanarClosure : kClosure)[worst_.row];
     case Worst::Kind::kContact:
       return pair_name(pairs_[i]);
+    case Worst::Kind::kBodyContact:
+      return body_contact_name(i);
     case Worst::Kind::kRod:
       break;
   }
@@ -55,6 +57,7 @@ void visit(RobotUnknowns& u, Archive& archive) {
     archive.doubles(rod.nodes);
     visit(rod.contacts, archive);
   }
+  visit(u.body_contacts, archive);
   for (Pose& body : u.bodies)
     archive(body);
   archive.doubles(u.joint_q);
@@ -74,6 +77,8 @@ void Equations::visit(Archive& archive) {
     joint.visit(archive);
   for (RobotRod& rod : robot_.rods)
     rod.model->visit(archive);
+  cprsim::visit(robot_.body_contacts, archive);
+  cprsim::visit(robot_.body_contact_rows, archive);
   if (archive.reading()) expect_contacts(unknowns());
   slip_from_.resize(archive.count(slip_from_.size(), robot_.bodies.size()));
   for (Pose& from : slip_from_)
@@ -112,6 +117,9 @@ void Equations::expect_contacts(const RobotUnknowns& u) const {
     }
     if (!sound) throw StateError("the state has contacts that are not this robot's");
   }
+  for (const BodyContact& c : u.body_contacts)
+    if (!leads(c.probe, robot_.probes.size()) || c.law.grip == Grip::kTie)
+      throw StateError("the state has contacts that are not this robot's");
 }
 
 }  // namespace cprsim

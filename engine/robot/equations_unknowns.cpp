@@ -24,6 +24,7 @@ RobotUnknowns Equations::unknowns() const {
     u.joint_q.push_back(joint.q);
     u.joint_lambda.push_back(joint.lambda);
   }
+  u.body_contacts = robot_.body_contacts;
   return u;
 }
 
@@ -38,6 +39,7 @@ void Equations::set_unknowns(const RobotUnknowns& u) {
     robot_.joints[i].set_unknown_q(u.joint_q[i]);
     robot_.joints[i].lambda = u.joint_lambda[i];
   }
+  robot_.body_contacts = u.body_contacts;
 }
 
 void Equations::predict(const std::vector<const RobotUnknowns*>& past,
@@ -72,6 +74,7 @@ void Equations::predict(const std::vector<const RobotUnknowns*>& past,
     joint.lambda = left_by_plane(joint.lambda);
     joint.set_unknown_q(q);
   }
+  robot_.body_contacts = past.back()->body_contacts;
 }
 
 void Equations::keep() {
@@ -84,6 +87,7 @@ void Equations::keep() {
     kept_.joint_q.push_back(joint.q);
     kept_.joint_lambda.push_back(joint.lambda);
   }
+  kept_.body_contacts = robot_.body_contacts;
   for (RobotRod& rod : robot_.rods)
     rod.model->keep();
 }
@@ -104,6 +108,10 @@ void Equations::move(double alpha) {
       if (unknown >= 0) joint.q[i] = kept_.joint_q[j][i] + alpha * x_[at + freedoms_ + unknown];
     }
   }
+  for (std::size_t k = 0; k < robot_.body_contacts.size(); ++k)
+    robot_.body_contacts[k].law.force =
+        kept_.body_contacts[k].law.force +
+        alpha * x_.segment<3>(first_touch_ + 3 * static_cast<Eigen::Index>(k));
   for (RobotRod& rod : robot_.rods)
     rod.model->move(alpha);
 }

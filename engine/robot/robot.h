@@ -10,6 +10,7 @@
 
 #include "engine/model/scene.h"
 #include "engine/robot/body.h"
+#include "engine/robot/body_contact.h"
 #include "engine/robot/joint.h"
 #include "engine/rod/fineness.h"
 #include "engine/rod/rod_maker.h"
@@ -85,8 +86,11 @@ struct Robot {
   std::vector<RobotRod> rods;
   std::vector<BodyLoad> body_loads;
   std::vector<JointDrive> joint_drives;
-  Vec3 gravity = Vec3::Zero();  ///< 0 unless the effect is on
-  bool rods_meet = false;       ///< bodies that move, or each other
+  Vec3 gravity = Vec3::Zero();                 ///< 0 unless the effect is on
+  bool rods_meet = false;                      ///< bodies that move, or each other
+  std::vector<BodyProbe> probes;               ///< of bodies that may touch
+  std::vector<BodyContact> body_contacts;      ///< where they do
+  std::vector<ContactRows> body_contact_rows;  ///< of these, at the last evaluation
   RobotScale scale;
   std::optional<Mat3> plane;    ///< of a planar scene: e1, e2 and the normal as columns, world
   PhaseClock* clock = nullptr;  ///< measures where time goes, if somebody asked; not owned

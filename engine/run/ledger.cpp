@@ -170,6 +170,9 @@ double EnergyLedger::damping_power() const {
     power += rod.model->energy().damping_power;
   for (const Joint& joint : robot_.joints)
     power += joint.loss();
+  for (std::size_t k = 0;
+       k < std::min(robot_.body_contacts.size(), robot_.body_contact_rows.size()); ++k)
+    power += contact_loss(robot_.body_contacts[k].law, robot_.body_contact_rows[k]);
   return power;
 }
 

@@ -91,6 +91,7 @@ void Marcher::predict(double time) {
 // full steps, and with what slips held; failing that, Levenberg-Marquardt.
 SolveReport Marcher::solve_once(double time) {
   predict(time);
+  contacts_.refresh();
   SolveReport report = newton(equations_, options_);
   const auto again = [&](SolveReport (*solve)(Problem&, const SolveOptions&),
                          const SolveOptions& options) {
@@ -98,24 +99,28 @@ SolveReport Marcher::solve_once(double time) {
     report = solve(equations_, options);
     report.iterations += spent;
   };
+  const auto set_out = [&] {
+    equations_.set_unknowns(start_);
+    contacts_.refresh();
+  };
   if (report.converged()) return report;
-  equations_.set_unknowns(start_);
+  set_out();
   again(newton, options_);
   if (!report.converged() && contacts_.touching()) {
-    equations_.set_unknowns(start_);
+    set_out();
     if (contacts_.ease()) again(newton, options_);
     if (report.converged()) return report;
     SolveOptions bold = options_;
     bold.bold = true;
-    equations_.set_unknowns(start_);
+    set_out();
     contacts_.ease();
     again(newton, bold);
     if (report.converged()) return report;
-    equations_.set_unknowns(start_);
+    set_out();
     if (contacts_.hold()) again(newton, options_);
   }
   if (report.converged()) return report;
-  equations_.set_unknowns(start_);
+  set_out();
   again(levenberg_marquardt, options_);
   return report;
 }

@@ -148,6 +148,7 @@ struct Simulation::Parts {
     sample.friction = rods.friction;
     sample.slip = rods.slip;
     sample.points = rods.points;
+    sample.links.insert(sample.links.end(), rods.links.begin(), rods.links.end());
     sample.distances = rods.distances;
   }
 

@@ -91,8 +91,8 @@ class ContactCheck {
     if (!within_reach) {
       r_.report.at(Severity::kWarning, "W506", collider.place, kCollisionCaret,
                    "rods pass through " + name +
-                       ", which flies freely: they touch what stands still or is held, and what "
-                       "flies and may touch nothing but rods");
+                       ", which flies freely: they touch such a body in a dynamic scene, and if no "
+                       "<velocity_decay> slows it");
       return;
     }
     obstacles_ = true;

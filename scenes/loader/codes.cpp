@@ -76,7 +76,7 @@ const std::vector<CodeEntry>& diagnostic_codes() {
       {"W503", "an effect has nothing to act on"},
       {"W504", "a time step that does not fit the duration"},
       {"W505", "joint limits that nothing enforces in this version"},
-      {"W506", "rods pass through bodies in free flight that may touch other bodies, too"},
+      {"W506", "rods pass through a body in free flight: in statics, or for its velocity_decay"},
       {"W507", "a quaternion or direction was not of unit length and has been normalised"},
       {"W508", "a resolution that belongs to a method no rod uses"},
       {"W511", "data for an effect that is not listed"},
