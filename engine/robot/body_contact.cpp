@@ -16,6 +16,7 @@ void visit(std::vector<BodyContact>& contacts, Archive& archive) {
     archive(contacts[i].probe);
     archive(contacts[i].at);
     archive(contacts[i].bounce);
+    archive(contacts[i].give);
   }
 }
 
@@ -31,13 +32,13 @@ BodyContactRows rows_between(const BodyProbe& probe, const BodyContact& contact,
   const PointMotion own(body, rows.y), opposite(other, rows.y);
   rows.slip = own.v - opposite.v;
   // (3), or (4) as a length
-  const double time = scale.length / scale.rate, given = probe.give * n.dot(law.force);
+  const double time = scale.length / scale.rate, given = contact.give * n.dot(law.force);
   const bool bounces = contact.bounce > 0;
   const double gap =
       bounces ? time * (n.dot(rows.slip) - contact.bounce) : rows.at.d - probe.radius - law.sunk;
   GripRows row = grip_rows(law, gap + given, n, rows.slip, scale);
-  row.by_n += probe.give * row.by_gap * law.force.transpose();
-  row.by_force += probe.give * row.by_gap * n.transpose();
+  row.by_n += contact.give * row.by_gap * law.force.transpose();
+  row.by_force += contact.give * row.by_gap * n.transpose();
   Mat3 by_d = row.by_gap * n.transpose();
   if (bounces) {
     row.by_n += time * row.by_gap * rows.slip.transpose();
@@ -45,7 +46,7 @@ BodyContactRows rows_between(const BodyProbe& probe, const BodyContact& contact,
     by_d.setZero();
   }
   if (law.grip == Grip::kStick) {  // (3)
-    const double unit = probe.give / scale.length;
+    const double unit = contact.give / scale.length;
     const Vec3 more = law.force - law.held;
     row.value += unit * (more - n.dot(more) * n);
     row.by_n += unit * (-n.dot(more) * Mat3::Identity() - n * more.transpose());

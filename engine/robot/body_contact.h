@@ -44,6 +44,7 @@ struct BodyContact {
   Vec3 at = Vec3::Zero();  ///< a, in its body
   RodContact law;          ///< grip, friction, lever and force are what counts of it
   double bounce = 0;       ///< -e n.u_0, m/s; 0: (3)
+  double give = 0;         ///< C; less in the step in which it comes
 };
 
 /// Contacts as a solve leaves them. @throws StateError for more than a robot can have

@@ -17,6 +17,8 @@ constexpr int kPatience = 12, kFirstOnly = 40;
 // of the size: deeper a scene may not begin
 constexpr double kMostOverlap = 0.01;
 constexpr double kMostKappa = 1e3;
+// of its give: what an impact's force is to leave of it
+constexpr double kImpact = 1e-3;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -119,13 +121,11 @@ BodyContacts::Foot BodyContacts::foot(const BodyProbe& probe) const {
 }
 
 /// Of a body's point when the step began.
-double BodyContacts::begun_gap(const BodyProbe& probe, const Vec3& at) const {
-  const auto begun = [&](int body) {
-    return body < 0 ? Pose{} : begun_[static_cast<std::size_t>(body)];
-  };
-  return distance_to(probe.surface, begun(probe.other) * probe.surface.X_WC, begun(probe.body) * at)
-             .d -
-         probe.radius;
+Distance BodyContacts::begun(const BodyProbe& probe, const Vec3& at) const {
+  Distance found = distance_to(probe.surface, begun_pose(probe.other) * probe.surface.X_WC,
+                               begun_pose(probe.body) * at);
+  found.d -= probe.radius;
+  return found;
 }
 
 // What gives under the force that it had is no depth to come back from.
@@ -133,7 +133,7 @@ double BodyContacts::sunk(const BodyContact& contact) const {
   if (left_ == 0) return 0;
   const BodyProbe& probe = robot_.probes[contact.probe];
   const double given = probe.give * contact.law.held.norm();
-  return left_ * std::min(0.0, begun_gap(probe, contact.at) + given);
+  return left_ * std::min(0.0, begun(probe, contact.at).d + given);
 }
 
 /// The speed at which what meets now is to part, or 0. What rests only falls back by what gravity
@@ -145,8 +145,7 @@ double BodyContacts::bounce(const BodyProbe& probe, const Foot& foot) const {
     const auto b = static_cast<std::size_t>(body);
     return velocity_[b].tail<3>() + velocity_[b].head<3>().cross(y - begun_[b].p);
   };
-  const Pose X = probe.body < 0 ? Pose{} : begun_[static_cast<std::size_t>(probe.body)];
-  const Vec3 y = X * foot.at - probe.radius * foot.normal;
+  const Vec3 y = begun_pose(probe.body) * foot.at - probe.radius * foot.normal;
   const double approach = -foot.normal.dot(at(probe.body, y) - at(probe.other, y));
   const double rest = 2 * robot_.gravity.norm() * since_;
   return approach > rest ? probe.restitution * approach : 0;
@@ -322,7 +321,10 @@ void BodyContacts::begin_step(bool lagged) {
   for (const RigidBody& body : robot_.bodies) {
     begun_.push_back(body.pose());
     Vec6 velocity;
-    velocity << body.R * body.omega, body.velocity();
+    if (body.position.v0.size() == 0)
+      velocity.setZero();
+    else
+      velocity << body.R * body.rotation.v0, body.position.v0;
     velocity_.push_back(velocity);
   }
   for (BodyContact& contact : robot_.body_contacts)
@@ -345,7 +347,9 @@ void BodyContacts::set_terms(BodyContact& contact) const {
   const auto was = std::find_if(before_.begin(), before_.end(),
                                 [&](const BodyContact& old) { return old.probe == contact.probe; });
   law.held = was == before_.end() ? Vec3(Vec3::Zero()) : was->law.force;
-  if (was != before_.end()) contact.bounce = 0;
+  const bool old = was != before_.end();
+  if (old) contact.bounce = 0;
+  contact.give = (old ? 1 : kImpact) * probe.give;
   law.may_rest = eased_ > 0;
   law.bound = -1;
   if (lagged_) law.bound = law.friction * std::max(0.0, -law.lever.dot(law.held) / probe.radius);
@@ -367,27 +371,21 @@ bool BodyContacts::changed() const {
 
 // A point may go halfway through what it could be in by now.
 bool BodyContacts::leapt() const {
+  if (begun_.empty()) return false;
   for (const Group& group : groups_) {
-    const bool held = std::any_of(
-        robot_.body_contacts.begin(), robot_.body_contacts.end(), [&](const BodyContact& contact) {
-          return contact.probe >= group.first && contact.probe < group.last;
-        });
     const BodyProbe& first = robot_.probes[group.first];
-    if (held || !std::isfinite(first.thickness) || begun_.empty()) continue;
-    const auto begun = [&](int body) {
-      return body < 0 ? Pose{} : begun_[static_cast<std::size_t>(body)];
-    };
+    if (!acts(first) || !std::isfinite(first.thickness)) continue;
     // the body's motion as the other sees it
-    const Pose shift = pose(first.other).inverse() * pose(first.body);
-    const Pose was = begun(first.other).inverse() * begun(first.body);
+    const Pose other = begun_pose(first.other);
+    const Pose seen = other * pose(first.other).inverse() * pose(first.body);
+    const Pose was = begun_pose(first.body);
     for (std::size_t p = group.first; p < group.last; ++p) {
       const BodyProbe& probe = robot_.probes[p];
       if (probe.kind != BodyProbe::Kind::kPoint) continue;
-      const Vec3 at = probe.X_BC * probe.a;
-      const double way = (shift * at - was * at).norm();
-      if (2 * way > probe.thickness &&
-          2 * way > std::max(0.0, begun_gap(probe, at)) + probe.thickness)
-        return true;
+      const Vec3 at = probe.X_BC * probe.a, way = seen * at - was * at;
+      if (2 * way.norm() <= probe.thickness) continue;
+      const Distance from = begun(probe, at);
+      if (-2 * from.n.dot(way) > std::max(0.0, from.d) + probe.thickness) return true;
     }
   }
   return false;

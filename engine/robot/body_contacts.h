@@ -77,7 +77,12 @@ class BodyContacts {
   Foot foot(const BodyProbe& probe) const;
   Foot lowest_on_edge(const BodyProbe& probe) const;
   double distance(const BodyProbe& probe, const Vec3& at, Vec3* normal) const;
-  double begun_gap(const BodyProbe& probe, const Vec3& at) const;
+
+  Pose begun_pose(int body) const {
+    return body < 0 ? Pose{} : begun_[static_cast<std::size_t>(body)];
+  }
+
+  Distance begun(const BodyProbe& probe, const Vec3& at) const;
   double sunk(const BodyContact& contact) const;
   double bounce(const BodyProbe& probe, const Foot& foot) const;
   void set_terms(BodyContact& contact) const;

@@ -36,7 +36,6 @@ BodyContactRows rows_of(const Case& of, const RigidBody& a, const RigidBody& b,
                         const BodyContact& contact, const std::array<RigidBody, 2>& from) {
   BodyProbe probe;
   probe.radius = 0.01;
-  probe.give = 1e-3;
   probe.surface.shape = &of.shape;
   probe.surface.X_WC = {exp_so3({0.1, -0.2, 0.3}), {0.02, 0.01, -0.03}};
   StageRates rates;
@@ -61,6 +60,7 @@ double worst_slope(const Case& of) {
   BodyContact contact;
   contact.at = {0.01, 0.02, -0.03};
   contact.bounce = of.bounce;
+  contact.give = 1e-3;
   contact.law.grip = of.grip;
   contact.law.friction = 0.4;
   contact.law.lever = {0.002, -0.001, -0.009};
