@@ -17,6 +17,7 @@ void visit(std::vector<BodyContact>& contacts, Archive& archive) {
     archive(contacts[i].at);
     archive(contacts[i].bounce);
     archive(contacts[i].give);
+    archive(contacts[i].fresh);
   }
 }
 

@@ -8,7 +8,7 @@
 //     or, without rates, by how much the two bodies' points at y moved apart since slip counts (2)
 // and, since three points already bear a body that rests on more,
 //   d - r + C n.f = 0,   stick: P (u / U + C (f - f_0) / L) = 0                             (3)
-// C, so small that a body sinks by 1e-6 of its size under its own weight, says how they share it;
+// C, so small that a body sinks by 2e-7 of its size under its own weight, says how they share it;
 // f_0 is the force when the step began: nothing creeps. In the step in which two hard things with a
 // coefficient of restitution e meet, with u_0 when it began, they part again:
 //   n.u + e n.u_0 = 0  in the place of  d - r = 0                                           (4)
@@ -44,7 +44,8 @@ struct BodyContact {
   Vec3 at = Vec3::Zero();  ///< a, in its body
   RodContact law;          ///< grip, friction, lever and force are what counts of it
   double bounce = 0;       ///< -e n.u_0, m/s; 0: (3)
-  double give = 0;         ///< C; less in the step in which it comes
+  double give = 0;         ///< C; less where it bounces
+  bool fresh = true;       ///< came within this step
 };
 
 /// Contacts as a solve leaves them. @throws StateError for more than a robot can have

@@ -128,12 +128,19 @@ Distance BodyContacts::begun(const BodyProbe& probe, const Vec3& at) const {
   return found;
 }
 
-// What gives under the force that it had is no depth to come back from.
-double BodyContacts::sunk(const BodyContact& contact) const {
+// What gives under the force that it had is no depth to come back from, unless it was that of an
+// impact: put back at once, what was hit would be thrown.
+double BodyContacts::sunk(const BodyContact& contact, const BodyContact* before) const {
   if (left_ == 0) return 0;
-  const BodyProbe& probe = robot_.probes[contact.probe];
-  const double given = probe.give * contact.law.held.norm();
-  return left_ * std::min(0.0, begun(probe, contact.at).d + given);
+  const double given = before && !before->fresh ? before->give * before->law.force.norm() : 0;
+  return left_ * std::min(0.0, begun(robot_.probes[contact.probe], contact.at).d + given);
+}
+
+/// The same contact when the step began, or null.
+const BodyContact* BodyContacts::before(const BodyContact& contact) const {
+  const auto was = std::find_if(before_.begin(), before_.end(),
+                                [&](const BodyContact& old) { return old.probe == contact.probe; });
+  return was == before_.end() ? nullptr : &*was;
 }
 
 /// The speed at which what meets now is to part, or 0. What rests only falls back by what gravity
@@ -188,7 +195,7 @@ bool BodyContacts::follow(BodyContact& contact, const ContactRows& rows) const {
     const double rate = rows.slip.norm(), force = law.force.norm();
     if (rate > 0 && force > 0) law.kappa = std::clamp(force / rate, 1.0, kMostKappa);
   }
-  law.sunk = sunk(contact);
+  law.sunk = sunk(contact, before(contact));
   return again;
 }
 
@@ -344,16 +351,15 @@ void BodyContacts::begin_stage(double left, double since) {
 void BodyContacts::set_terms(BodyContact& contact) const {
   RodContact& law = contact.law;
   const BodyProbe& probe = robot_.probes[contact.probe];
-  const auto was = std::find_if(before_.begin(), before_.end(),
-                                [&](const BodyContact& old) { return old.probe == contact.probe; });
-  law.held = was == before_.end() ? Vec3(Vec3::Zero()) : was->law.force;
-  const bool old = was != before_.end();
-  if (old) contact.bounce = 0;
-  contact.give = (old ? 1 : kImpact) * probe.give;
+  const BodyContact* was = before(contact);
+  contact.fresh = !was;
+  if (was) contact.bounce = 0;
+  contact.give = (contact.bounce > 0 ? kImpact : 1) * probe.give;
+  law.held = was ? was->law.force : Vec3(Vec3::Zero());
   law.may_rest = eased_ > 0;
   law.bound = -1;
   if (lagged_) law.bound = law.friction * std::max(0.0, -law.lever.dot(law.held) / probe.radius);
-  law.sunk = sunk(contact);
+  law.sunk = sunk(contact, was);
 }
 
 void BodyContacts::refresh() {

@@ -83,7 +83,8 @@ class BodyContacts {
   }
 
   Distance begun(const BodyProbe& probe, const Vec3& at) const;
-  double sunk(const BodyContact& contact) const;
+  double sunk(const BodyContact& contact, const BodyContact* before) const;
+  const BodyContact* before(const BodyContact& contact) const;
   double bounce(const BodyProbe& probe, const Foot& foot) const;
   void set_terms(BodyContact& contact) const;
   bool follow(BodyContact& contact, const ContactRows& rows) const;

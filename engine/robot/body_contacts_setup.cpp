@@ -12,7 +12,7 @@ namespace cprsim {
 namespace {
 
 // of its size: what a body sinks by under its own weight
-constexpr double kGive = 1e-6;
+constexpr double kGive = 2e-7;
 // m/s², where there is no gravity
 constexpr double kWeight = 1;
 
