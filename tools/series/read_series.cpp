@@ -105,6 +105,25 @@ std::vector<std::string> recordings_of(const RunFiles& run) {
   return names;
 }
 
+RunFiles files_in(const nlohmann::json& report, const std::string& folder) {
+  const auto list = [](const nlohmann::json& of, const char* name) {
+    return of.value(name, nlohmann::json::array());
+  };
+  const auto object = [&](const char* name) {
+    return report.value(name, nlohmann::json::object());
+  };
+  RunFiles run;
+  run.label = report.value("label", "run");
+  run.folder = folder;
+  run.scene = object("scene").value("path", "");
+  for (const nlohmann::json& file : list(report, "files"))
+    run.files.push_back({file.value("kind", ""), file.value("name", "")});
+  for (const nlohmann::json& rod : list(object("method"), "rods"))
+    if (rod.contains("length"))
+      run.longest_rod = std::max(run.longest_rod.value_or(0), rod.value("length", 0.0));
+  return run;
+}
+
 }  // namespace
 
 Series parse_series(const std::string& text, const std::string& name) {
@@ -132,24 +151,13 @@ std::vector<std::string> RunFiles::of_kind(const std::string& kind) const {
 RunFiles read_run_files(const std::string& folder) {
   std::ifstream stream(fs::path(folder) / "run.json");
   const nlohmann::json report = nlohmann::json::parse(stream, nullptr, false);
-  if (!stream || !report.is_object() || report.value("schema", "").rfind("cprsim-run/", 0) != 0)
-    throw std::runtime_error(folder + " holds no run of cprsim (no run.json)");
-  const auto list = [](const nlohmann::json& of, const char* name) {
-    return of.value(name, nlohmann::json::array());
-  };
-  const auto object = [&](const char* name) {
-    return report.value(name, nlohmann::json::object());
-  };
-  RunFiles run;
-  run.label = report.value("label", "run");
-  run.folder = folder;
-  run.scene = object("scene").value("path", "");
-  for (const nlohmann::json& file : list(report, "files"))
-    run.files.push_back({file.value("kind", ""), file.value("name", "")});
-  for (const nlohmann::json& rod : list(object("method"), "rods"))
-    if (rod.contains("length"))
-      run.longest_rod = std::max(run.longest_rod.value_or(0), rod.value("length", 0.0));
-  return run;
+  try {
+    if (stream && report.is_object() && report.value("schema", "").rfind("cprsim-run/", 0) == 0)
+      return files_in(report, folder);
+  } catch (const nlohmann::json::exception&) {  // texts, numbers and lists in the wrong places
+    throw std::runtime_error(folder + "/run.json is not as cprsim writes it");
+  }
+  throw std::runtime_error(folder + " holds no run of cprsim (no run.json)");
 }
 
 RecordedRun read_run(const std::string& folder) {
