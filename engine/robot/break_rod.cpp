@@ -7,20 +7,28 @@
 namespace cprsim {
 namespace {
 
+// What is fastened to the material would be pulled through the base.
+void refuse_length_drive(const RobotRod& rod, const std::string& why) {
+  if (rod.length_drive)
+    throw std::invalid_argument("the length of rod '" + rod.spec->name +
+                                "' cannot be driven: " + why);
+}
+
+void break_within(RobotRod& rod, double s) {
+  if (s > 0 && s < 1) rod.break_at(s);
+}
+
 void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
   for (std::size_t k = 0; k < scene.tendons.size(); ++k) {
     const TendonSpec& spec = scene.tendons[k];
     if (spec.rod != static_cast<int>(index)) continue;
-    if (rod.length_drive)
-      throw std::invalid_argument("the length of rod '" + rod.spec->name +
-                                  "' cannot be driven: tendon '" + spec.name + "' runs along it");
+    refuse_length_drive(rod, "tendon '" + spec.name + "' runs along it");
     RobotTendon tendon{static_cast<int>(k), &spec, nullptr};
     for (const DriveSpec& drive : scene.drives)
       if (drive.tendon == tendon.index) tendon.drive = &drive;
     rod.tendons.push_back(tendon);
-    for (double s : Tendon(spec).breaks())
-      if (std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
-        rod.breaks.push_back(s);
+    for (const double s : Tendon(spec).breaks())
+      rod.break_at(s);
   }
 }
 
@@ -30,41 +38,53 @@ void add_line_loads(RobotRod& rod) {
   if (rod.length_drive)
     throw std::invalid_argument("rod '" + rod.spec->name +
                                 "' has a load along it, and a length drive, too");
-  for (const LoadSpec* load : rod.line_loads)
-    for (const double s : {load->rod_s, *load->to})
-      if (s > 0 && s < 1 && std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
-        rod.breaks.push_back(s);
+  for (const LoadSpec* load : rod.line_loads) {
+    break_within(rod, load->rod_s);
+    break_within(rod, *load->to);
+  }
 }
 
 void add_magnets(RobotRod& rod) {
   if (!rod.magnetic) return;
-  if (rod.length_drive)
-    throw std::invalid_argument("the length of rod '" + rod.spec->name +
-                                "' cannot be driven: it is magnetised");
-  for (const MagnetSpec& magnet : rod.spec->magnets)
-    for (const double s : {magnet.from, magnet.to})
-      if (s > 0 && s < 1 && std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
-        rod.breaks.push_back(s);
+  refuse_length_drive(rod, "it is magnetised");
+  for (const MagnetSpec& magnet : rod.spec->magnets) {
+    break_within(rod, magnet.from);
+    break_within(rod, magnet.to);
+  }
 }
 
-// They are fastened to the material, which a length drive pulls through the base.
 void add_disks(RobotRod& rod) {
   if (rod.spec->disks.empty()) return;
-  if (rod.length_drive)
-    throw std::invalid_argument("the length of rod '" + rod.spec->name +
-                                "' cannot be driven: it carries disks");
+  refuse_length_drive(rod, "it carries disks");
   for (const DiskSpec& disk : rod.spec->disks)
-    if (std::find(rod.breaks.begin(), rod.breaks.end(), disk.s) == rod.breaks.end())
-      rod.breaks.push_back(disk.s);
+    rod.break_at(disk.s);
+}
+
+void add_ties(const Scene& scene, std::size_t index, RobotRod& rod) {
+  const auto add = [&](const std::vector<double>& all) {
+    for (const double s : all)
+      rod.break_at(s);
+    rod.tied = true;
+  };
+  for (const TieSpec& tie : scene.ties) {
+    if (tie.rod == static_cast<int>(index)) add(tie.s);
+    if (tie.other == static_cast<int>(index)) add(tie.other_s);
+  }
+  if (rod.tied) refuse_length_drive(rod, "it is tied to another");
 }
 
 }  // namespace
+
+void RobotRod::break_at(double s) {
+  if (std::find(breaks.begin(), breaks.end(), s) == breaks.end()) breaks.push_back(s);
+}
 
 void break_rod(const Scene& scene, std::size_t index, RobotRod& rod) {
   add_tendons(scene, index, rod);
   add_magnets(rod);
   add_line_loads(rod);
   add_disks(rod);
+  add_ties(scene, index, rod);
 }
 
 }  // namespace cprsim

@@ -8,8 +8,8 @@
 
 namespace cprsim {
 
-/// Tendons, loads, magnets and disks along a rod, Scene::rods[index]: where its sections are not
-/// smooth for them it has breaks.
+/// Tendons, loads, magnets, disks and ties along a rod, Scene::rods[index]: where its sections are
+/// not smooth for them it has breaks. Before its model is made.
 /// @throws std::invalid_argument for what a rod whose length is driven cannot have
 void break_rod(const Scene& scene, std::size_t index, RobotRod& rod);
 

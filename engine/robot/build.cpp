@@ -191,7 +191,6 @@ void add_rods(Robot& robot, const RodMaker& make) {
     rod.magnetic = has(Effect::kMagnetic) && !spec.magnets.empty();
     rod.heated = has(Effect::kThermal) && spec.temperature && spec.material;
     break_rod(scene, i, rod);
-    add_tie_stations(scene, i, rod);
     rod.gravity = spec.gravity && !spec.lacks("gravity");
     if (rod.length_drive) rod.length = rod.length_drive->evaluate(0, true).value;
     const RodPlan plan = plan_of(robot, rod);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the equations say of themselves: names of rows, counts.
+#include <algorithm>
+
 #include "engine/math/state_text.h"
 #include "engine/robot/equations.h"
 
@@ -81,45 +83,102 @@ void Equations::visit(Archive& archive) {
   cprsim::visit(robot_.body_contact_rows, archive);
   if (archive.reading()) expect_contacts(unknowns());
   slip_from_.resize(archive.count(slip_from_.size(), robot_.bodies.size()));
+  if (archive.reading() && (robot_.rods_meet || !robot_.probes.empty()) &&
+      slip_from_.size() != robot_.bodies.size())
+    throw StateError("the state is that of another robot");
   for (Pose& from : slip_from_)
     archive(from);
 }
 
-// A file may say anything: whatever is an index must lead somewhere.
-void Equations::expect_contacts(const RobotUnknowns& u) const {
-  const auto leads = [](auto index, std::size_t size) {
-    return index >= 0 && static_cast<std::size_t>(index) < size;
-  };
-  const auto in_cell = [&](std::size_t rod, std::size_t cell, double xi) {
-    const std::size_t nodes = robot_.rods[rod].model->touching()->contact_grid().size();
-    return xi >= 0 && xi <= 1 && cell < (xi == 0 ? nodes : nodes - 1);
-  };
-  for (std::size_t r = 0; r < u.rods.size(); ++r) {
-    const std::vector<RodContact>& contacts = u.rods[r].contacts;
-    if (contacts.empty()) continue;
-    TouchingRod* side = robot_.rods[r].model->touching();
-    bool sound = side && side->may_touch();
-    for (const RodContact& c : contacts) {
-      if (!sound) break;
-      const bool echo = c.role == ContactRole::kEcho, paired = echo || c.other_rod >= 0;
-      sound = in_cell(r, c.cell, c.xi) && c.body < static_cast<int>(robot_.bodies.size()) &&
-              (paired || c.body >= -1) &&
-              (c.grip == Grip::kTie || echo || leads(c.surface, side->surfaces().size()));
-      if (!sound || !paired) continue;
-      sound = leads(c.other_rod, u.rods.size()) &&
-              leads(c.partner, u.rods[static_cast<std::size_t>(c.other_rod)].contacts.size());
-      if (!sound) break;
-      const RodContact& other = u.rods[static_cast<std::size_t>(c.other_rod)]
-                                    .contacts[static_cast<std::size_t>(c.partner)];
-      sound = other.other_rod == static_cast<int>(r) &&
-              (other.role == ContactRole::kEcho) != echo &&
-              (c.grip == Grip::kTie) == (other.grip == Grip::kTie);
+namespace {
+
+bool leads(int index, std::size_t size) {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+/// What contacts are looked up in, of a robot whose state is read.
+class ContactCheck {
+ public:
+  ContactCheck(const Robot& robot, const RobotUnknowns& u) : robot_(robot), rods_(u.rods) {}
+
+  bool sound() const {
+    std::size_t ties = 0, tied = 0;
+    for (std::size_t r = 0; r < rods_.size(); ++r) {
+      const std::vector<RodContact>& contacts = rods_[r].contacts;
+      if (!contacts.empty() && !side(r)) return false;
+      double last = 0;
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const RodContact& c = contacts[i];
+        if (!sound(r, static_cast<int>(i))) return false;
+        if (c.grip == Grip::kTie && c.role == ContactRole::kShared) ++ties;
+        if (c.role == ContactRole::kEcho) continue;
+        const double at = static_cast<double>(c.cell) + (c.at_node() ? 0 : 0.5);
+        if (at < last) return false;
+        last = at;
+      }
     }
-    if (!sound) throw StateError("the state has contacts that are not this robot's");
+    for (const TieSpec& tie : robot_.scene->ties)
+      tied += tie.s.size();
+    return ties == tied;
   }
-  for (const BodyContact& c : u.body_contacts)
-    if (!leads(c.probe, robot_.probes.size()) || c.law.grip == Grip::kTie)
-      throw StateError("the state has contacts that are not this robot's");
+
+ private:
+  const TouchingRod* side(std::size_t rod) const {
+    const TouchingRod* found = robot_.rods[rod].model->touching();
+    return found && found->may_touch() ? found : nullptr;
+  }
+
+  bool in_cell(std::size_t rod, std::size_t cell, double xi) const {
+    if (!side(rod)) return false;
+    const std::size_t nodes = side(rod)->contact_grid().size();
+    return xi >= 0 && xi <= 1 && cell < (xi == 0 ? nodes : nodes - 1);
+  }
+
+  bool sound(std::size_t r, int index) const {
+    const RodContact& c = rods_[r].contacts[static_cast<std::size_t>(index)];
+    if (!in_cell(r, c.cell, c.xi)) return false;
+    const bool tie = c.grip == Grip::kTie, echo = c.role == ContactRole::kEcho;
+    if (tie && !c.at_node()) return false;
+    if (!tie && !echo && !leads(c.surface, side(r)->surfaces().size())) return false;
+    if (echo || c.other_rod >= 0) return c.body == -1 && paired(r, index);
+    // of two rods no surface has a shape
+    if (tie || !side(r)->surfaces()[static_cast<std::size_t>(c.surface)].shape) return false;
+    const bool own = c.body == -1 && side(r)->owns_forces();
+    return c.other_rod == -1 && c.partner == -1 && (c.role == ContactRole::kOwn) == own &&
+           (own || robot_.rods_meet) && (c.body == -1 || leads(c.body, robot_.bodies.size()));
+  }
+
+  /// One of two entries that two rods have of the same point.
+  bool paired(std::size_t r, int index) const {
+    const RodContact& c = rods_[r].contacts[static_cast<std::size_t>(index)];
+    if (!leads(c.other_rod, rods_.size()) || !robot_.rods_meet) return false;
+    const auto other_rod = static_cast<std::size_t>(c.other_rod);
+    const std::vector<RodContact>& others = rods_[other_rod].contacts;
+    if (!leads(c.partner, others.size()) || c.role == ContactRole::kOwn) return false;
+    const RodContact& other = others[static_cast<std::size_t>(c.partner)];
+    const bool tie = c.grip == Grip::kTie;
+    if (other.other_rod != static_cast<int>(r) || other.partner != index || other.role == c.role ||
+        other.role == ContactRole::kOwn || (other.grip == Grip::kTie) != tie)
+      return false;
+    if (tie || c.role == ContactRole::kEcho) return true;
+    return !side(r)->surfaces()[static_cast<std::size_t>(c.surface)].shape &&
+           in_cell(other_rod, c.other_cell, c.other_xi);
+  }
+
+  const Robot& robot_;
+  const std::vector<RodModel::Unknowns>& rods_;
+};
+
+}  // namespace
+
+// A file may say anything: whatever is an index must lead somewhere, and roles must fit.
+void Equations::expect_contacts(const RobotUnknowns& u) const {
+  const bool meet =
+      std::all_of(u.body_contacts.begin(), u.body_contacts.end(), [&](const BodyContact& contact) {
+        return contact.probe < robot_.probes.size() && contact.law.grip != Grip::kTie;
+      });
+  if (!meet || !ContactCheck(robot_, u).sound())
+    throw StateError("the state has contacts that are not this robot's");
 }
 
 }  // namespace cprsim

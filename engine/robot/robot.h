@@ -55,6 +55,9 @@ struct RobotRod {
   bool gravity = true;
   bool magnetic = false, heated = false;  ///< by the effects and what the rod has
   RodForcing forcing;                     ///< at the current instant
+
+  /// Makes s a break, once.
+  void break_at(double s);
 };
 
 struct BodyLoad {

@@ -31,22 +31,6 @@ Pose unloaded(const Robot& robot, const RobotRod& rod, double s) {
 
 }  // namespace
 
-void add_tie_stations(const Scene& scene, std::size_t index, RobotRod& rod) {
-  const auto add = [&](const std::vector<double>& all) {
-    for (const double s : all)
-      if (std::find(rod.breaks.begin(), rod.breaks.end(), s) == rod.breaks.end())
-        rod.breaks.push_back(s);
-    rod.tied = true;
-  };
-  for (const TieSpec& tie : scene.ties) {
-    if (tie.rod == static_cast<int>(index)) add(tie.s);
-    if (tie.other == static_cast<int>(index)) add(tie.other_s);
-  }
-  if (rod.tied && rod.length_drive)
-    throw std::invalid_argument("the length of rod '" + rod.spec->name +
-                                "' cannot be driven: it is tied to another");
-}
-
 void tie_rods(Robot& robot) {
   std::vector<std::vector<TiedPoint>> points(robot.rods.size());
   int count = 0;

@@ -7,9 +7,6 @@
 
 namespace cprsim {
 
-/// Makes what a rod is tied at stations of it: before its model is made.
-void add_tie_stations(const Scene& scene, std::size_t index, RobotRod& rod);
-
 /// Ties the rods: once all have models.
 /// @throws std::invalid_argument for a rod whose method cannot be tied.
 void tie_rods(Robot& robot);

@@ -7,6 +7,7 @@
 #include "tests/agreement/rigid_link.h"
 #include "tests/support/finite_difference.h"
 #include "tests/support/jointed_bodies.h"
+#include "tests/support/rod_ends.h"
 
 namespace cprsim {
 namespace {
@@ -56,11 +57,7 @@ Scene two_bodies() {
   LoadSpec load;
   load.at = {1, Pose{Mat3::Identity(), {0.01, 0.02, 0.03}}};
   load.force = {0.5, 0.3, -0.4};
-  ProfileTerm step;
-  step.shape = ShapeOfTime::kStep;
-  step.from = 1;
-  load.has_profile = true;
-  load.profile.terms.push_back(step);
+  let_go(load);
   scene.loads.push_back(load);
   return scene;
 }
@@ -102,29 +99,14 @@ double difference(const Snapshot& a, const Snapshot& b) {
   return most;
 }
 
-struct Ends {
-  Port base, tip;
-};
-
 // Equations (1), (2) against differences, closed or not.
 TEST(FourthMethod, IsLinearisedExactly) {
   const Scene scene = linked();
   Robot robot = build_robot(scene, make);
   RodModel& link = *robot.rods[1].model;
-  Ends ends;
+  RodEnds ends;
   ends.base = {exp_so3({0.1, -0.2, 0.3}), {0.02, 0.01, -0.03}, {0.1, 0.05, -0.07}, true};
   ends.tip = {exp_so3({0.5, 0.3, -0.1}), {0.05, -0.02, 0.04}, {-0.06, 0.1, 0.03}, true};
-  const auto moved = [](Ends at, const VecX& zeta) {
-    const auto move = [](Port& port, const Vec3& phi, const Vec3& dp) {
-      const Vec3 reference = port.p - port.arm;
-      port.R = exp_so3(phi) * port.R;
-      port.arm = exp_so3(phi) * port.arm;
-      port.p = reference + dp + port.arm;
-    };
-    move(at.base, zeta.segment<3>(0), zeta.segment<3>(3));
-    move(at.tip, zeta.segment<3>(6), zeta.segment<3>(9));
-    return at;
-  };
   RodForcing forcing;
   forcing.length = kLink;
   link.prepare(StageRates{}, forcing);
@@ -133,7 +115,7 @@ TEST(FourthMethod, IsLinearisedExactly) {
   link.keep();
   link.set_direction(z, Vec6::Zero());
   link.move(1);
-  const auto rows = [&](const Ends& at) -> VecX {
+  const auto rows = [&](const RodEnds& at) -> VecX {
     link.evaluate(at.base, at.tip);
     CondensedRod c;
     link.linearize(at.base, at.tip, c);

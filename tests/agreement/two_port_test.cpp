@@ -8,30 +8,13 @@
 #include "tests/engine/robot/sample_scenes.h"
 #include "tests/support/finite_difference.h"
 #include "tests/support/methods.h"
+#include "tests/support/rod_ends.h"
 
 namespace cprsim {
 namespace {
 
-struct Ends {
-  Port base, tip;
-};
-
-/// The bodies moved: rotation and reference point, world axes.
-Ends moved(const Ends& ends, const VecX& zeta) {
-  Ends out = ends;
-  const auto move = [](Port& port, const Vec3& phi, const Vec3& dp) {
-    const Vec3 reference = port.p - port.arm;
-    port.R = exp_so3(phi) * port.R;
-    port.arm = exp_so3(phi) * port.arm;
-    port.p = reference + dp + port.arm;
-  };
-  move(out.base, zeta.segment<3>(0), zeta.segment<3>(3));
-  move(out.tip, zeta.segment<3>(6), zeta.segment<3>(9));
-  return out;
-}
-
 /// Newton's method on the rod alone. @return wrenches on both bodies.
-VecX solve(RodModel& rod, const Ends& ends) {
+VecX solve(RodModel& rod, const RodEnds& ends) {
   CondensedRod c;
   for (int i = 0; i < 30; ++i) {
     const RodResidual r = rod.evaluate(ends.base, ends.tip);
@@ -46,7 +29,7 @@ VecX solve(RodModel& rod, const Ends& ends) {
   return wrenches;
 }
 
-MatX stiffness(RodModel& rod, const Ends& ends) {
+MatX stiffness(RodModel& rod, const RodEnds& ends) {
   CondensedRod c;
   EXPECT_TRUE(rod.linearize(ends.base, ends.tip, c));
   const MatX z_A = -solve_columns(c.T, c.T_A), z_B = -solve_columns(c.T, c.T_B);
@@ -84,14 +67,14 @@ TEST_P(TwoPort, IsTheDerivativeOfTheEndWrenches) {
       forcing.gravity = {1, -2, -3};
       forcing.loads = {load_at(scene.loads[0], 0, false)};
       const StageRates rates = dynamic ? StageRates{4, 5, true} : StageRates{};
-      Ends ends;
+      RodEnds ends;
       ends.base = {exp_so3({0.1, -0.2, 0.3}), {0.02, 0.01, -0.03}, {0.1, 0.05, -0.07}, true};
       ends.tip = {exp_so3({0.5, 0.3, -0.1}), {0.25, -0.1, 0.85}, {-0.06, 0.1, 0.03}, true};
       rod.prepare(StageRates{}, forcing);
       solve(rod, ends);
       if (dynamic) rod.start_tracks();
       rod.prepare(rates, forcing);
-      const auto f = [&](const Ends& at) { return solve(rod, at); };
+      const auto f = [&](const RodEnds& at) { return solve(rod, at); };
       const MatX expected = difference_jacobian(f, ends, 12, moved, DifferenceSteps(2e-3));
       solve(rod, ends);
       const MatX S = stiffness(rod, ends);

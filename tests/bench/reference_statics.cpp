@@ -20,6 +20,29 @@ Scene with(const RodSpec& rod, std::initializer_list<Effect> effects = {}) {
   return scene;
 }
 
+/// The equilibrium that one is led to from the scene's own, in steps that `set` makes.
+CaseAnswer led_to(Scene scene, Method m, double length, int steps,
+                  const std::function<void(StaticStudy&, int)>& set,
+                  const std::function<double(const Snapshot&)>& measure) {
+  cut(scene, m, length);
+  scene.solver.residual_tolerance = 1e-11;
+  StaticStudy study(scene);
+  CaseAnswer answer;
+  answer.unknowns = unknowns_of(study.robot());
+  answer.found = study.solve().converged();
+  for (int i = 1; answer.found && i <= steps; ++i) {
+    set(study, i);
+    answer.found = study.follow().converged();
+  }
+  answer.error = measure(study.snapshot());
+  return answer;
+}
+
+/// Of the scene's first load.
+void set_force(StaticStudy& study, int axis, double value) {
+  study.set({Parameter::Kind::kForce, 0, axis, "", "N"}, value);
+}
+
 ReferenceCase rolled_up() {
   return {"S01", "cantilever rolled up twice by a moment", "tip / L", kClosedForm, [](Method m) {
             Scene scene = with(rod_of(1, 1, 1, 1));
@@ -42,25 +65,18 @@ ReferenceCase elastica() {
 
 // With the tip at the angle a and k = sin(a/2): P L²/EI = K², x = 2 E / K - 1, y = 2 k / K.
 ReferenceCase buckled_column() {
-  return {"S04", "column buckled until its tip stands at 120°", "tip / L", kClosedForm,
-          [](Method m) {
-            const double k = std::sin(kPi / 3), c = std::cos(kPi / 3);
-            const double K = elliptic_F(1, 0, c * c), E = elliptic_E(1, 0, c * c);
-            Scene scene = with(rod_of(1, 1, 1, 1));
-            add_load(scene, 1, {2, 0, -K * K});
-            cut(scene, m, 1);
-            scene.solver.residual_tolerance = 1e-11;
-            StaticStudy study(scene);
-            CaseAnswer answer;
-            answer.unknowns = unknowns_of(study.robot());
-            answer.found = study.solve().converged();
-            for (int i = 3; answer.found && i >= 0; --i) {
-              study.set({Parameter::Kind::kForce, 0, 0, "", "N"}, 0.5 * i);
-              answer.found = study.follow().converged();
-            }
-            answer.error = (tip_of(study.snapshot()) - Vec3(2 * k / K, 0, 2 * E / K - 1)).norm();
-            return answer;
-          }};
+  return {
+      "S04", "column buckled until its tip stands at 120°", "tip / L", kClosedForm, [](Method m) {
+        const double k = std::sin(kPi / 3), c = std::cos(kPi / 3);
+        const double K = elliptic_F(1, 0, c * c), E = elliptic_E(1, 0, c * c);
+        Scene scene = with(rod_of(1, 1, 1, 1));
+        add_load(scene, 1, {2, 0, -K * K});
+        return led_to(
+            scene, m, 1, 4, [](StaticStudy& study, int i) { set_force(study, 0, 0.5 * (4 - i)); },
+            [&](const Snapshot& s) {
+              return (tip_of(s) - Vec3(2 * k / K, 0, 2 * E / K - 1)).norm();
+            });
+      }};
 }
 
 ReferenceCase thick_cantilever() {
@@ -118,31 +134,25 @@ ReferenceCase love_helix() {
             Scene scene;
             scene.rods.push_back(rod_of(L, 1, 1, kGJ));
             add_load(scene, 1, Vec3::Zero());
-            cut(scene, m, L);
-            scene.solver.residual_tolerance = 1e-11;
-            StaticStudy study(scene);
-            CaseAnswer answer;
-            answer.unknowns = unknowns_of(study.robot());
-            answer.found = study.solve().converged();
             constexpr int kSteps = 20;
-            for (int i = 1; answer.found && i <= kSteps; ++i) {
+            Vec3 tip;
+            const auto wind = [&](StaticStudy& study, int i) {
               const double part = static_cast<double>(i) / kSteps;
               const double k = part, t = 2 * part, w = 2.5 * part, turn = std::hypot(k, t) * L;
               const Vec3 axis = Vec3(0, k, t).normalized(), along = axis.z() * axis;
               const Vec3 n = k * (kGJ * w - t) * Vec3(0, 1, t / k), moment(0, k, kGJ * w);
               const Vec3 across = Vec3::UnitZ() - along;
-              const Vec3 tip =
+              tip =
                   L * along +
                   L / turn * (std::sin(turn) * across + (1 - std::cos(turn)) * axis.cross(across));
               const Vec3 torque = moment - tip.cross(n);
               for (int j = 0; j < 3; ++j) {
-                study.set({Parameter::Kind::kForce, 0, j, "", "N"}, n[j]);
+                set_force(study, j, n[j]);
                 study.set({Parameter::Kind::kTorque, 0, j, "", "N m"}, torque[j]);
               }
-              answer.found = study.follow().converged();
-              answer.error = (tip_of(study.snapshot()) - tip).norm() / L;
-            }
-            return answer;
+            };
+            return led_to(scene, m, L, kSteps, wind,
+                          [&](const Snapshot& s) { return (tip_of(s) - tip).norm() / L; });
           }};
 }
 
@@ -207,19 +217,12 @@ ReferenceCase till_rod_clamped() {
             scene.gravity = {9.81, 0, 0};
             // pushed to the side of the lowest energy, and left there
             add_load(scene, 0.5, {5, 0, 0});
-            cut(scene, m, 0.5);
-            scene.solver.residual_tolerance = 1e-11;
-            StaticStudy study(scene);
-            CaseAnswer answer;
-            answer.unknowns = unknowns_of(study.robot());
-            answer.found = study.solve().converged();
-            for (int i = 4; answer.found && i >= 0; --i) {
-              study.set({Parameter::Kind::kForce, 0, 0, "", "N"}, i);
-              answer.found = study.follow().converged();
-            }
-            const Vec3 middle = point_at(study.snapshot().rods[0], 0.5).position;
-            answer.error = (middle - Vec3(0.129366265803, -0.025, 0.2)).norm() / 0.5;
-            return answer;
+            return led_to(
+                scene, m, 0.5, 5, [](StaticStudy& study, int i) { set_force(study, 0, 5 - i); },
+                [](const Snapshot& s) {
+                  const Vec3 middle = point_at(s.rods[0], 0.5).position;
+                  return (middle - Vec3(0.129366265803, -0.025, 0.2)).norm() / 0.5;
+                });
           }};
 }
 

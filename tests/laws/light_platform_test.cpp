@@ -17,12 +17,7 @@ std::vector<Vec3> path_with_mass(double mass, double* largest = nullptr) {
   LoadSpec push;
   push.at.body = 0;
   push.force = {0.1, 0, 0};
-  push.has_profile = true;
-  ProfileTerm step;
-  step.shape = ShapeOfTime::kStep;
-  step.from = 1;
-  step.start = 0.02;
-  push.profile.terms.push_back(step);
+  let_go(push, 0.02);
   scene.loads.push_back(push);
   scene.solver.points = 6;
   scene.solver.step = 5e-3;

@@ -18,6 +18,11 @@ std::vector<fs::path> bad_scenes() {
   return paths;
 }
 
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 TEST(BadScenes, GiveTheCodeInTheirNameAndNoOther) {
   int count = 0;
   for (const fs::path& path : bad_scenes()) {
@@ -50,6 +55,20 @@ TEST(BadScenes, AreComplainedAboutAtALine) {
       EXPECT_FALSE(explain_code(d.code).empty()) << d.code;
     }
   }
+}
+
+// What a loader's code means is shown by a scene in bad/; the others are named where they are
+// tested.
+TEST(Codes, HaveATestEach) {
+  std::string tested;
+  for (const fs::path& path : bad_scenes())
+    tested += path.filename().string() + "\n";
+  for (const auto& entry :
+       fs::recursive_directory_iterator(std::string(CPRSIM_SOURCE_DIR) + "/tests"))
+    if (entry.path().extension() == ".cpp") tested += text_of(entry.path());
+  EXPECT_GT(diagnostic_codes().size(), 80u);
+  for (const CodeEntry& entry : diagnostic_codes())
+    EXPECT_NE(tested.find(entry.code), std::string::npos) << entry.code;
 }
 
 TEST(ShippedScenes, LoadWithoutErrorsOrWarnings) {

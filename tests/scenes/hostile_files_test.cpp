@@ -94,6 +94,14 @@ TEST_F(HostileFiles, InOtherEncodingsAreRefused) {
   EXPECT_EQ(code_of_text(std::string("<sdf>\0</sdf>", 12)), "E202");
   EXPECT_EQ(code_of_text("<sdf>\xC0\xAF</sdf>"), "E202");      // overlong
   EXPECT_EQ(code_of_text("<sdf>\xED\xA0\x80</sdf>"), "E202");  // surrogate
+  for (const char* bad : {"\xC3", "\xC3(", "\xE0\x9F\xBF", "\xE2\x82", "\xE2(\x82",
+                          "\xF0\x8F\xBF\xBF", "\xF0\x9D\x84", "\xF0\x9D(\x84", "\xF0(\x9D\x84",
+                          "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\x80"})
+    EXPECT_EQ(code_of_text(std::string("<sdf>") + bad + "</sdf>"), "E202") << bad;
+  // the least and the largest of two, three and four bytes, and around the surrogates
+  for (const char* good : {"\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
+                           "\xEF\xBF\xBD", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF", "\t\r\n"})
+    EXPECT_TRUE(load_text(scene_text(std::string("<!--") + good + "-->")).scene) << good;
 }
 
 TEST_F(HostileFiles, CutAnywhereGiveErrorsNotCrashes) {

@@ -68,13 +68,7 @@ TEST(FreeFall, OfAFreeRodIsExact) {
 // N6: 4 N for 2 ms on a free rod give it 8 mN s, whatever it does meanwhile.
 TEST(Impulse, GivesItsMomentum) {
   Scene scene = free_rod(1e-3, 12, 5e-4, 0.02);
-  LoadSpec& push = add_load(scene, 0.5, {4, 0, 0});
-  push.has_profile = true;
-  ProfileTerm pulse;
-  pulse.shape = ShapeOfTime::kStep;
-  pulse.from = 1;
-  pulse.start = 2e-3;
-  push.profile.terms.push_back(pulse);
+  let_go(add_load(scene, 0.5, {4, 0, 0}), 2e-3);
   Simulation simulation(scene);
   const Snapshot end = run_to_end(simulation);
   ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
@@ -140,11 +134,7 @@ TEST(HangingPlate, IsStableFromAGramToATon) {
     LoadSpec push;
     push.at.body = 0;
     push.force = {mass, 0, 0};
-    push.has_profile = true;
-    ProfileTerm step;
-    step.shape = ShapeOfTime::kStep;
-    step.from = 1;
-    push.profile.terms.push_back(step);
+    let_go(push);
     scene.loads.push_back(push);
     scene.solver.points = 8;
     scene.solver.step = 1e-3;

@@ -45,6 +45,16 @@ inline void switch_on(Scene& scene, std::initializer_list<Effect> effects) {
     scene.effects.set(e, true);
 }
 
+/// The load ends at once.
+inline void let_go(LoadSpec& load, double at = 0) {
+  ProfileTerm step;
+  step.shape = ShapeOfTime::kStep;
+  step.from = 1;
+  step.start = at;
+  load.has_profile = true;
+  load.profile.terms.push_back(step);
+}
+
 /// Adds a load on rod 0; `until_zero` lets it go at t = 0.
 inline LoadSpec& add_load(Scene& scene, double s, const Vec3& force,
                           const Vec3& torque = Vec3::Zero(), bool until_zero = false) {
@@ -53,13 +63,7 @@ inline LoadSpec& add_load(Scene& scene, double s, const Vec3& force,
   load.rod_s = s;
   load.force = force;
   load.torque = torque;
-  if (until_zero) {
-    ProfileTerm step;
-    step.shape = ShapeOfTime::kStep;
-    step.from = 1;
-    load.has_profile = true;
-    load.profile.terms.push_back(step);
-  }
+  if (until_zero) let_go(load);
   scene.loads.push_back(load);
   return scene.loads.back();
 }

@@ -78,6 +78,27 @@ TEST_F(Restart, RefusesWhatIsNoStateOfTheScene) {
   EXPECT_EQ(csv("a"), kept);
 }
 
+// How well such runs do is judged over the whole of them: they may begin anew with other steps.
+TEST_F(Restart, IsRefusedToRunsThatChooseTheirSettings) {
+  spill(folder_ / "swing.xml", swing("esdirk32", ""));
+  ASSERT_EQ(run("swing.xml -o a -qq --duration 0.1 --checkpoint-every 0.05").code, 0);
+  for (const auto& [words, reason] :
+       {std::pair{"--accuracy 1e-3", "an <accuracy> cannot go on from a state"},
+        {"--real-time-factor 1", "a --real-time-factor cannot go on from a state"}}) {
+    const Outcome outcome =
+        run(std::string("swing.xml -o b --from a/checkpoint.state --duration 0.1 ") + words);
+    EXPECT_EQ(outcome.code, 3) << words << outcome.err;
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "b")) << words;
+  }
+  const Outcome judged =
+      run("swing.xml -o c --duration 0.1 --accuracy 1e-3 --checkpoint-every 0.05 --hash");
+  ASSERT_EQ(judged.code, 0) << judged.err;
+  EXPECT_NE(judged.err.find("no checkpoints are written"), std::string::npos) << judged.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "c/checkpoint.state"));
+  EXPECT_NE(judged.out.find(" 0.1 "), std::string::npos) << "a hash of the last step";
+}
+
 // A state is left behind that fails again, at once, at the same place.
 TEST_F(Restart, ReproducesAFailure) {
   spill(folder_ / "swing.xml",

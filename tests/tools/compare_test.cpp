@@ -115,6 +115,14 @@ TEST_F(Compare, WrongWordsAreAnsweredWithWhatWouldBeRight) {
   }
   EXPECT_FALSE(exists("out"));
   EXPECT_EQ(run("compare . reference.csv").code, 5);
+  for (const char* text :
+       {R"({"schema": 1})", R"({"schema": "cprsim-run/1", "files": [5]})",
+        R"({"schema": "cprsim-run/1", "method": {"rods": [{"length": "a"}]}})"}) {
+    spill(folder_ / "run.json", text);
+    const Answer answer = run("compare . reference.csv");
+    EXPECT_EQ(answer.code, 5) << text;
+    EXPECT_TRUE(answer.complains("./run.json is not as cprsim writes it")) << answer.err;
+  }
 }
 
 }  // namespace

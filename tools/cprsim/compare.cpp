@@ -11,6 +11,7 @@
 #include "tools/cprsim/compare_report.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/output_folder.h"
+#include "tools/cprsim/study_command.h"
 #include "tools/series/pairing.h"
 #include "tools/series/read_series.h"
 #include "tools/sinks/output_file.h"
@@ -196,7 +197,7 @@ int compare_command(const Words& words) {
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const CompareOptions& options = std::get<CompareOptions>(parsed);
   const Console console(options.console);
-  try {
+  return complain_of(console, [&] {
     const CompareReport report = compare(options);
     const OutputFolder folder(choose_output_folder(options.output, report.label + "_compare"),
                               {"compare.json", "cprsim-compare/"});
@@ -207,16 +208,7 @@ int compare_command(const Words& words) {
     if (report.kept()) return kExitDone;
     console.error("the run is farther from the reference than allowed");
     return kExitExpectationFailed;
-  } catch (const UsageError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const PairingError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const TableError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  }
+  });
 }
 
 }  // namespace cprsim

@@ -218,18 +218,12 @@ int export_command(const Words& words) {
   add_console_options(line, options.console);
   if (const auto code = line.parse(words)) return *code;
   const Console console(options.console);
-  try {
+  return complain_of(console, [&] {
     check_files(options);
     if (!can_be_simulated(options.source)) return export_recording(options, console);
     return answer(options.source, options.scene, console,
                   [&](const Scene& scene) { return export_scene(scene, options, console); });
-  } catch (const UsageError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const TableError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  }
+  });
 }
 
 }  // namespace cprsim

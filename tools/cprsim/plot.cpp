@@ -283,19 +283,10 @@ int plot_command(const Words& words) {
   add_console_options(line, options.console);
   if (const auto code = line.parse(words)) return *code;
   const Console console(options.console);
-  try {
+  return complain_of(console, [&] {
     check_words(options);
     return plot(options, console);
-  } catch (const UsageError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const TableError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const NoEquilibrium& error) {
-    console.error(error.what());
-    return kExitSimulationFailed;
-  }
+  });
 }
 
 }  // namespace cprsim

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +17,7 @@
 #include "tools/cprsim/run_options.h"
 #include "tools/cprsim/study_command.h"
 #include "tools/series/hdf5_series.h"
-#include "tools/series/measured_table.h"
+#include "tools/series/read_series.h"
 #include "tools/series/recorded_states.h"
 #include "tools/sinks/film_sink.h"
 #include "tools/sinks/frame_sink.h"
@@ -38,43 +37,42 @@ struct RenderCommandOptions {
   std::optional<double> fps, speed;
 };
 
-/// What a run's folder says of itself.
-struct RunFolder {
+struct Source {
   std::string scene, recording;
 };
 
-RunFolder read_folder(const fs::path& folder) {
-  std::ifstream stream(folder / "run.json");
-  const nlohmann::json report = nlohmann::json::parse(stream, nullptr, false);
-  if (!stream || !report.is_object() || report.value("schema", "").rfind("cprsim-run/", 0) != 0)
-    throw UsageError(folder.string() + " holds no run of cprsim (no run.json)");
-  RunFolder found;
-  found.scene = report.value("scene", nlohmann::json::object()).value("path", "");
-  for (const nlohmann::json& file : report.value("files", nlohmann::json::array())) {
-    if (file.value("kind", "") != "hdf5") continue;
-    if (!found.recording.empty())
-      throw UsageError(folder.string() + " holds several HDF5 recordings; name one of them");
-    found.recording = folder / file.value("name", "");
+RunFiles files_in(const fs::path& folder) {
+  try {
+    return read_run_files(folder);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
   }
-  if (found.recording.empty())
+}
+
+std::string recording_in(const RunFiles& run) {
+  const std::vector<std::string> names = run.of_kind("hdf5");
+  if (names.empty())
     throw UsageError(
-        folder.string() +
+        run.folder +
         " holds no HDF5 recording to draw from: <cprsim:record> with <hdf5/> makes one");
-  return found;
+  if (names.size() > 1)
+    throw UsageError(run.folder + " holds several HDF5 recordings; name one of them");
+  return fs::path(run.folder) / names[0];
 }
 
 /// The recording and its scene, from the folder where the command line does not say.
-RunFolder find_recording(const RenderCommandOptions& options) {
-  RunFolder found;
+Source find_recording(const RenderCommandOptions& options) {
+  Source found;
   if (fs::is_directory(options.source)) {
-    found = read_folder(options.source);
+    const RunFiles run = files_in(options.source);
+    found = {run.scene, recording_in(run)};
   } else {
     if (!is_hdf5(options.source))
       throw UsageError(options.source + " is neither a run's folder nor an HDF5 file");
     found.recording = options.source;
     const fs::path folder = fs::path(options.source).parent_path();
     if (options.scene.empty() && fs::exists(folder / "run.json"))
-      found.scene = read_folder(folder.empty() ? "." : folder).scene;
+      found.scene = files_in(folder.empty() ? "." : folder).scene;
   }
   if (!options.scene.empty()) found.scene = options.scene;
   if (found.scene.empty()) throw UsageError("which scene is it of? Name it with --scene");
@@ -147,11 +145,14 @@ class Pictures {
   }
 
   void draw(const RecordedStates& states, const Scene& scene) {
-    Snapshot before = state(states, scene, 0);
+    std::vector<SectionsAlong> along;
+    for (const RodSpec& rod : scene.rods)
+      along.emplace_back(rod, false);
+    Snapshot before = state(states, along, 0);
     for (const auto& sink : sinks_)
       sink->begin(before);
     for (std::size_t k = 1; k < states.times().size() && stop_signal() == 0; ++k) {
-      Snapshot now = state(states, scene, k);
+      Snapshot now = state(states, along, k);
       for (const auto& sink : sinks_)
         sink->step(before, now);
       before = std::move(now);
@@ -170,13 +171,12 @@ class Pictures {
 
  private:
   /// With the curvature without load, which only the scene knows.
-  static Snapshot state(const RecordedStates& states, const Scene& scene, std::size_t k) {
+  static Snapshot state(const RecordedStates& states, const std::vector<SectionsAlong>& along,
+                        std::size_t k) {
     Snapshot snapshot = states.at(k);
-    for (std::size_t r = 0; r < scene.rods.size(); ++r) {
-      const SectionsAlong along(scene.rods[r], false);
+    for (std::size_t r = 0; r < along.size(); ++r)
       for (RodPoint& point : snapshot.rods[r].points)
-        point.rest_curvature = along.rest_curvature(point.s);
-    }
+        point.rest_curvature = along[r].rest_curvature(point.s);
     return snapshot;
   }
 
@@ -234,16 +234,12 @@ int render_command(const Words& words) {
   if (const auto code = line.parse(words)) return *code;
   const Console console(options.console);
   try {
-    const RunFolder found = find_recording(options);
-    return answer(found.scene, SceneOptions{}, console, [&](const Scene& scene) {
-      return render(scene, found.recording, options, console);
+    return complain_of(console, [&] {
+      const Source found = find_recording(options);
+      return answer(found.scene, SceneOptions{}, console, [&](const Scene& scene) {
+        return render(scene, found.recording, options, console);
+      });
     });
-  } catch (const UsageError& error) {
-    console.error(error.what());
-    return kExitUsage;
-  } catch (const TableError& error) {
-    console.error(error.what());
-    return kExitUsage;
   } catch (const std::runtime_error& error) {  // of disk, graphics, encoder
     const OutputComplaint complaint(error);
     console.error(complaint.code, complaint.text);

@@ -76,7 +76,8 @@ void simulate(Run& run, Simulation& simulation, Outputs& outputs, StateFiles& st
     if (simulation.status() == RunStatus::kFailed) break;
     outputs.step(simulation.before(), simulation.now());
     if (run.track != nullptr) run.track->step(simulation.before(), simulation.now());
-    if (run.track == nullptr) states.step(simulation, outputs);
+    states.step(simulation);
+    if (run.track == nullptr) states.write_if_due(simulation, outputs);
     progress.update(simulation.time(), simulation.statistics().steps,
                     simulation.statistics().iterations);
   }
@@ -205,8 +206,8 @@ void finish_profile(Run& run, Simulation& simulation) {
   if (run.options.profile) run.report.phases = run.profile->clock().sums();
   if (run.profile->left_out() > 0)
     run.console.warn(
-        fmt::format("{} holds the first million stretches of time; {} more are left out",
-                    run.options.trace, run.profile->left_out()));
+        "W605", fmt::format("{} holds the first million stretches of time; {} more are left out",
+                            run.options.trace, run.profile->left_out()));
 }
 
 void warn_of_imbalance(const Run& run) {
@@ -272,6 +273,10 @@ int run_to_accuracy(Run& run) {
   AccuracyControl control(run.scene);
   if (control.asked() && !run.options.from.empty())
     throw StateError("a run that is held to an <accuracy> cannot go on from a state");
+  if (control.asked() && run.options.checkpoint_every)
+    run.console.warn(
+        "no checkpoints are written of a run that is held to an <accuracy>: its error is found out "
+        "at its end, and it may begin anew");
   if (control.asked()) control.fly_pilot([&] { return must_stop(run); });
   for (bool again = true; again;) {
     const auto simulation = build_simulation(control.scene());

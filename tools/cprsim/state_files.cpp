@@ -60,10 +60,13 @@ std::string StateFiles::unavailable(const Simulation& simulation) const {
          "are ida's";
 }
 
-void StateFiles::step(Simulation& simulation, Outputs& outputs) {
+void StateFiles::step(Simulation& simulation) const {
   if (options_.hash)
     write_to_stdout(fmt::format("{} {} {}\n", simulation.statistics().steps, simulation.time(),
                                 state_hash(simulation)));
+}
+
+void StateFiles::write_if_due(Simulation& simulation, Outputs& outputs) {
   if (!options_.checkpoint_every || simulation.time() < next_ * (1 - 1e-12)) return;
   write("checkpoint.state", simulation, outputs);
   while (next_ <= simulation.time() * (1 + 1e-12))

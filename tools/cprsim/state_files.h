@@ -31,8 +31,11 @@ class StateFiles {
   /// Why no checkpoint can be written though some are asked for; or nothing.
   std::string unavailable(const Simulation& simulation) const;
 
-  /// After each step: writes a checkpoint if one is due.
-  void step(Simulation& simulation, Outputs& outputs);
+  /// After each step: prints its hash, if asked for.
+  void step(Simulation& simulation) const;
+
+  /// Writes a checkpoint if one is due.
+  void write_if_due(Simulation& simulation, Outputs& outputs);
 
   /// checkpoint.state, failure.state. Scenes whose state cannot be visited have none.
   void write(const std::string& name, Simulation& simulation, Outputs& outputs);

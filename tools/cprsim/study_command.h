@@ -20,9 +20,13 @@ class NoEquilibrium : public std::runtime_error {
 /// @throws NoEquilibrium that says how far the solve got, unless it converged
 void require_equilibrium(const SolveReport& report);
 
+/// @return what `act` returns, or the exit code of what it throws, with a message: UsageError and
+/// what is wrong with tables (TableError, PairingError), NoEquilibrium
+int complain_of(const Console& console, const std::function<int()>& act);
+
 /// Loads the scene, shows what there is to say about it, and asks. @return what `ask` returns, or
-/// the exit code of what it throws: UsageError, NoEquilibrium, std::invalid_argument for a scene
-/// that cannot be simulated
+/// the exit code of what it throws: as complain_of(), and std::invalid_argument for a scene that
+/// cannot be simulated
 int answer(const std::string& path, const SceneOptions& options, const Console& console,
            const std::function<int(const Scene&)>& ask);
 

@@ -323,8 +323,6 @@ int sweep_command(const Words& words) {
       // others may be waiting for this one
       if (ranks.size() > 1) console.error(error.what());
       ranks.give_up(kExitUsage);
-      if (dynamic_cast<const TableError*>(&error) || dynamic_cast<const PairingError*>(&error))
-        throw UsageError(error.what());
       throw;
     }
   });

@@ -96,16 +96,32 @@ Series to_series(const MeasuredTable& table) {
 }
 
 /// The files of a run that hold channels, each recording once.
-std::vector<std::string> recordings_of(const nlohmann::json& files) {
+std::vector<std::string> recordings_of(const RunFiles& run) {
   std::vector<std::string> names;
   std::set<std::string> seen;  // without their extensions
   for (const char* kind : {"csv", "hdf5"})
-    for (const nlohmann::json& entry : files) {
-      const std::string name = entry.value("name", "");
-      if (entry.value("kind", "") == kind && seen.insert(fs::path(name).replace_extension()).second)
-        names.push_back(name);
-    }
+    for (const std::string& name : run.of_kind(kind))
+      if (seen.insert(fs::path(name).replace_extension()).second) names.push_back(name);
   return names;
+}
+
+RunFiles files_in(const nlohmann::json& report, const std::string& folder) {
+  const auto list = [](const nlohmann::json& of, const char* name) {
+    return of.value(name, nlohmann::json::array());
+  };
+  const auto object = [&](const char* name) {
+    return report.value(name, nlohmann::json::object());
+  };
+  RunFiles run;
+  run.label = report.value("label", "run");
+  run.folder = folder;
+  run.scene = object("scene").value("path", "");
+  for (const nlohmann::json& file : list(report, "files"))
+    run.files.push_back({file.value("kind", ""), file.value("name", "")});
+  for (const nlohmann::json& rod : list(object("method"), "rods"))
+    if (rod.contains("length"))
+      run.longest_rod = std::max(run.longest_rod.value_or(0), rod.value("length", 0.0));
+  return run;
 }
 
 }  // namespace
@@ -125,27 +141,34 @@ Series read_series(const std::string& path) {
   return parse_series(table_text(path), path);
 }
 
-RecordedRun read_run(const std::string& folder) {
-  const fs::path file = fs::path(folder) / "run.json";
-  std::ifstream stream(file);
+std::vector<std::string> RunFiles::of_kind(const std::string& kind) const {
+  std::vector<std::string> names;
+  for (const File& file : files)
+    if (file.kind == kind) names.push_back(file.name);
+  return names;
+}
+
+RunFiles read_run_files(const std::string& folder) {
+  std::ifstream stream(fs::path(folder) / "run.json");
   const nlohmann::json report = nlohmann::json::parse(stream, nullptr, false);
-  if (!stream || !report.is_object() || report.value("schema", "").rfind("cprsim-run/", 0) != 0)
-    throw std::runtime_error(folder + " holds no run of cprsim (no run.json)");
-  RecordedRun run;
-  run.label = report.value("label", "run");
-  run.folder = folder;
-  const nlohmann::json files = report.value("files", nlohmann::json::array());
+  try {
+    if (stream && report.is_object() && report.value("schema", "").rfind("cprsim-run/", 0) == 0)
+      return files_in(report, folder);
+  } catch (const nlohmann::json::exception&) {  // texts, numbers and lists in the wrong places
+    throw std::runtime_error(folder + "/run.json is not as cprsim writes it");
+  }
+  throw std::runtime_error(folder + " holds no run of cprsim (no run.json)");
+}
+
+RecordedRun read_run(const std::string& folder) {
+  const RunFiles files = read_run_files(folder);
+  RecordedRun run{files.label, files.folder, {}, files.longest_rod};
   for (const std::string& name : recordings_of(files))
     run.recordings.push_back(read_series((fs::path(folder) / name).string()));
   if (run.recordings.empty())
     throw std::runtime_error(folder +
                              ": the run recorded neither CSV nor HDF5 files; its scene needs a "
                              "<cprsim:record> with <csv/> or <hdf5/> and the channels");
-  const nlohmann::json method = report.value("method", nlohmann::json::object());
-  const nlohmann::json rods = method.value("rods", nlohmann::json::array());
-  for (const nlohmann::json& rod : rods)
-    if (rod.contains("length"))
-      run.longest_rod = std::max(run.longest_rod.value_or(0), rod.value("length", 0.0));
   return run;
 }
 

@@ -20,7 +20,25 @@ namespace cprsim {
 Series read_series(const std::string& path);
 Series parse_series(const std::string& text, const std::string& name);
 
-/// What a run recorded: its folder, and what run.json there says.
+/// What run.json in a run's folder says.
+struct RunFiles {
+  /// One that the run wrote: "csv", "hdf5", ...; its name in the folder.
+  struct File {
+    std::string kind, name;
+  };
+
+  std::string label, folder;
+  std::string scene;                  ///< path; empty if unknown
+  std::optional<double> longest_rod;  ///< m
+  std::vector<File> files;
+
+  std::vector<std::string> of_kind(const std::string& kind) const;
+};
+
+/// @throws std::runtime_error if the folder holds no run
+RunFiles read_run_files(const std::string& folder);
+
+/// What a run recorded.
 struct RecordedRun {
   std::string label, folder;
   std::vector<Series> recordings;     ///< one per CSV file; HDF5 where there is no CSV

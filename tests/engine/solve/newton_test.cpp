@@ -109,6 +109,21 @@ TEST(Newton, SaysThatItHasRunOutOfIterations) {
   EXPECT_EQ(r.status, SolveStatus::kIterationLimit);
 }
 
+TEST(Newton, MakesAsManyIterationsAsItMay) {
+  for (const int most : {0, 1, 2})
+    for (const auto& solve : {newton, levenberg_marquardt}) {
+      SmallProblem problem = scalar_problem(
+          1.0, [](double x) { return std::exp(x) - 2; }, [](double x) { return std::exp(x); });
+      SolveOptions options;
+      options.max_iterations = most;
+      const SolveReport r = solve(problem, options);
+      expect_consistent(r, options);
+      EXPECT_EQ(r.status, SolveStatus::kIterationLimit);
+      EXPECT_EQ(r.iterations, most);
+      EXPECT_EQ(r.history.size(), static_cast<std::size_t>(most) + 1);
+    }
+}
+
 TEST(Newton, NeverClaimsARootThatIsNotThere) {
   for (double start : {3.0, 0.3, -1.0}) {
     SmallProblem problem = no_root(start);
