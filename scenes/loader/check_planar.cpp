@@ -116,14 +116,6 @@ class PlanarCheck {
     return true;
   }
 
-  /// As choose_method() will decide: left to the program it is another where shooting cannot.
-  bool by_shooting(const RodSpec& rod) const {
-    const SolverSpec& solver = scene_.solver;
-    const Method method = rod.method.value_or(solver.method);
-    return method == Method::kShooting ||
-           (method == Method::kAuto && (solver.points || solver.integrator));
-  }
-
   void check(const RodSpec& rod) {
     if (rod.sections.size() > 1)
       complain(rod.place, 10,
@@ -131,10 +123,6 @@ class PlanarCheck {
     if (!rod.rest_curvature.isZero() || !rod.rest_samples.empty())
       complain(rod.place, 10,
                "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
-    if (scene_.effects.has(Effect::kDrag) && rod.drag && !rod.lacks("drag") && by_shooting(rod))
-      complain(rod.place, 10,
-               "rod '" + rod.name + "' has drag, which shooting in a plane does not know",
-               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
     if (scene_.effects.has(Effect::kThermal) && rod.temperature && !rod.lacks("thermal") &&
         !rod.temperature->gradient.isZero(0))
       complain(rod.place, 10,
@@ -174,10 +162,6 @@ class PlanarCheck {
 
   void check_magnets(const RodSpec& rod) {
     if (rod.magnets.empty()) return;
-    if (by_shooting(rod))
-      complain(rod.place, 10,
-               "rod '" + rod.name + "' is magnetised, which shooting in a plane does not know",
-               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
     for (const MagnetSpec& magnet : rod.magnets)
       if (leaves(axes_of(rod) * magnet.moment))
         complain(rod.place, 10, "the magnetisation of rod '" + rod.name + "' leaves the plane");
@@ -196,13 +180,7 @@ class PlanarCheck {
   }
 
   void check(const LoadSpec& load) {
-    if (load.to) {
-      const RodSpec& rod = scene_.rods[at(load.rod)];
-      if (by_shooting(rod))
-        complain(load.place, 11,
-                 "a load along rod '" + rod.name + "', which shooting in a plane does not know",
-                 "leave <planar> out, or take method=\"strain\" or \"collocation\"");
-    }
+    check_law(load);
     Mat3 R = load.R_expressed;
     if (load.follower && load.rod < 0) R = in_world(load.at).R * R;
     if (load.follower && load.rod >= 0) R = axes_of(scene_.rods[at(load.rod)]) * R;
@@ -211,6 +189,16 @@ class PlanarCheck {
       complain(load.place, 11, "the force " + words(F) + " N leaves the plane");
     else if (turns(T))
       complain(load.place, 11, "the torque " + words(T) + " N m is not about the plane's normal");
+  }
+
+  void check_law(const LoadSpec& load) {
+    if (load.law < 0) return;
+    const double* x = load.law_values.data();
+    for (const LawValue& value : kPlaceLaws[at(load.law)].values) {
+      if (value.kind == LawValue::kDirection && leaves(Vec3(x[0], x[1], x[2])))
+        complain(load.place, 11, "the direction of a load along a rod leaves the plane");
+      x += value.size();
+    }
   }
 
   void velocities() {

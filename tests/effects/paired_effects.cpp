@@ -113,38 +113,38 @@ void add_sprung_base(Scene& scene, double share) {
   holder.name = "holder";
   holder.mass = 1e-3;
   holder.inertia = 1e-6 * Mat3::Identity();
+  const int index = static_cast<int>(scene.bodies.size());
   scene.bodies.push_back(holder);
   JointSpec hinge;
   hinge.name = "hinge";
   hinge.kind = JointKind::kRevolute;
   hinge.axis = Vec3::UnitY();
-  hinge.child = 0;
+  hinge.child = index;
   hinge.spring_stiffness = 10 / share;
   hinge.damping = 0.05 / share;
   scene.joints.push_back(hinge);
-  scene.rods[0].base.at.body = 0;
+  scene.rods[0].base.at.body = index;
 }
 
 }  // namespace
 
 std::vector<PairedEffect> paired_effects() {
-  return {
-      {.name = "gravity", .add = add_gravity},
-      {.name = "extension", .add = add_extension},
-      {.name = "shear", .add = add_shear},
-      {.name = "rotary inertia", .add = add_rotary_inertia, .moving = true, .whole = true},
-      {.name = "damping", .add = add_damping, .moving = true},
-      {.name = "fluid", .add = add_fluid, .by_shooting = false},
-      {.name = "load along it", .add = add_line_load, .by_shooting = false, .length_stays = false},
-      {.name = "follower", .add = add_follower},
-      {.name = "tendon", .add = add_wound_tendon, .in_plane = false, .length_stays = false},
-      {.name = "taper", .add = add_taper, .in_plane = false},
-      {.name = "magnetic", .add = add_magnet, .by_shooting = false, .length_stays = false},
-      {.name = "thermal", .add = add_heat, .in_plane = false},
-      {.name = "disks", .add = add_disks, .length_stays = false},
-      {.name = "rest curvature", .add = add_rest_curvature, .in_plane = false},
-      {.name = "feed", .add = add_feed},
-      {.name = "sprung base", .add = add_sprung_base}};
+  return {{.name = "gravity", .add = add_gravity},
+          {.name = "extension", .add = add_extension},
+          {.name = "shear", .add = add_shear},
+          {.name = "rotary inertia", .add = add_rotary_inertia, .moving = true, .whole = true},
+          {.name = "damping", .add = add_damping, .moving = true},
+          {.name = "fluid", .add = add_fluid},
+          {.name = "load along it", .add = add_line_load, .length_stays = false},
+          {.name = "follower", .add = add_follower},
+          {.name = "tendon", .add = add_wound_tendon, .in_plane = false, .length_stays = false},
+          {.name = "taper", .add = add_taper, .in_plane = false},
+          {.name = "magnetic", .add = add_magnet, .length_stays = false},
+          {.name = "thermal", .add = add_heat, .in_plane = false},
+          {.name = "disks", .add = add_disks, .length_stays = false},
+          {.name = "rest curvature", .add = add_rest_curvature, .in_plane = false},
+          {.name = "feed", .add = add_feed},
+          {.name = "sprung base", .add = add_sprung_base}};
 }
 
 Scene rod_for_pairs(bool moves) {

@@ -16,8 +16,7 @@ struct PairedEffect {
   std::function<void(Scene&, double share)> add;
   bool moving = false;       ///< does nothing at rest
   bool whole = false;        ///< comes with its full amplitude only
-  bool in_plane = true;      ///< may be asked for with <planar normal="0 1 0">,
-  bool by_shooting = true;   ///< there by shooting, too
+  bool in_plane = true;      ///< may be asked for with <planar normal="0 1 0">
   bool length_stays = true;  ///< a length drive does not exclude it
 };
 
