@@ -33,6 +33,11 @@ inline constexpr PlaceLaw kPlaceLaws[] = {
      {{{"stiffness", LawValue::kPositive, "N/m2", "Force per length and distance."},
        {"point", LawValue::kPlace, "m", "A point of the plane."},
        {"normal", LawValue::kDirection, "", "Its normal."}}}},
+    {"conducting_plane",
+     "Grounded: attracts a charged rod.",
+     {{{"charge", LawValue::kPositive, "C/m", "Of the rod, per length."},
+       {"point", LawValue::kPlace, "m", "A point of the plane."},
+       {"normal", LawValue::kDirection, "", "Its normal."}}}},
 };
 
 }  // namespace cprsim

@@ -4,13 +4,14 @@
 
 #include <iterator>
 
+#include "engine/section/conducting_plane.h"
 #include "engine/section/fluid_section.h"
 #include "engine/section/foundation.h"
 #include "engine/section/outer_field.h"
 
 namespace {  // NOLINT: as small_vector.h
 
-constexpr PlaceForce (*kPlaceForces[])(const double* values, V3 p) = {foundation};
+constexpr PlaceForce (*kPlaceForces[])(const double* values, V3 p) = {foundation, conducting_plane};
 
 static_assert(std::size(kPlaceForces) == std::size(cprsim::kPlaceLaws));
 
