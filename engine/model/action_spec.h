@@ -11,6 +11,7 @@
 #include "engine/math/types.h"
 #include "engine/model/body_spec.h"
 #include "engine/model/place.h"
+#include "engine/model/place_law.h"
 #include "engine/model/profile.h"
 
 namespace cprsim {
@@ -39,6 +40,8 @@ struct LoadSpec {
   Mat3 R_expressed = Mat3::Identity();  ///< non-follower: axes of expressed_in at t = 0 in the
                                         ///< world; follower: in the axes of `at` or of the section
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< in the expressed_in axes
+  int law = -1;  ///< along a rod: index into kPlaceLaws, instead of force and torque
+  std::array<double, kLawNumbers> law_values{};
   bool has_profile = false;
   Profile profile;
 };

@@ -56,6 +56,7 @@ void Equations::prepare_rods() {
       LineLoad line = line_load_at(*load, t_, before_);
       line.force *= acting();
       line.torque *= acting();
+      line.law.strength *= acting();
       forcing.lines.push_back(line);
     }
     if (rod.magnetic) forcing.field = sources_at(*robot_.scene, t_, before_, acting());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What loads, tendons, magnetic fields and heat do to a rod at an instant.
+#include <algorithm>
+
 #include "engine/robot/robot.h"
 
 namespace cprsim {
@@ -12,7 +14,14 @@ PointLoad load_at(const LoadSpec& load, double t, bool before) {
 
 LineLoad line_load_at(const LoadSpec& load, double t, bool before) {
   const PointLoad at = load_at(load, t, before);
-  return {load.rod_s, *load.to, at.force, at.torque, at.follower};
+  LineLoad line{load.rod_s, *load.to, at.force, at.torque, at.follower, {}};
+  if (load.law < 0) return line;
+  line.law.law = load.law;
+  line.law.from = line.from;
+  line.law.to = line.to;
+  line.law.strength = load.has_profile ? load.profile.evaluate(t, before).value : 1.0;
+  std::copy(load.law_values.begin(), load.law_values.end(), line.law.values);
+  return line;
 }
 
 MagneticSources sources_at(const MagneticFieldSpec& field, double t, bool before) {

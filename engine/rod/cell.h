@@ -22,7 +22,7 @@
 
 #include "engine/rod/tableau.h"
 #include "engine/section/fluid_section.h"
-#include "engine/section/magnetic_field.h"
+#include "engine/section/outer_field.h"
 #include "engine/section/tendon_section.h"
 
 namespace cprsim {
@@ -92,7 +92,7 @@ struct CellModel : CellSection {
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
   FluidSection* fluid = nullptr;         ///< of the cell's stages, for the laws of a fluid
   bool loaded = false;                   ///< whether these have moments per length, too
-  const MagneticField* field = nullptr;  ///< what magnetised ones of these are in, if any
+  const OuterField* field = nullptr;  ///< what magnetised ones of these are in, if any
   TendonSection* tendons =
       nullptr;  ///< of the cell's stages; only read where tendons are part of the law
 };

@@ -214,7 +214,7 @@ struct Linearization {
       if constexpr (immersed(law))
         if (M.loaded) {
           add_product(m_s[j], 1.0, load_matrix(M.fluid[j].moment_phi), phi[j]);
-          if (M.field && M.field->count > 0)
+          if (M.field && M.field->magnetic.count > 0)
             add_product(m_s[j], 1.0, load_matrix(M.fluid[j].moment_p), p[j]);
         }
       if constexpr (!is_plain(law))

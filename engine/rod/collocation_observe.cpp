@@ -119,7 +119,7 @@ RodField CollocationRod::field() const {
                           y.segment<3>(kN), y.segment<3>(kM)});
       if (fluid_.field())
         f.magnetic.push_back(
-            fluid_.magnetic_stiffness(s + 0.5 * h, f.points.back().R, y.segment<3>(kP)));
+            fluid_.outer_stiffness(s + 0.5 * h, f.points.back().R, y.segment<3>(kP)));
       if (tendons_) describe_tendons(at, f);
     }
   }

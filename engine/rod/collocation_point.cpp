@@ -162,7 +162,7 @@ void linearize_point(const PointModel& model, const CollocationPoint& point, Mat
     by_y.block<3, 4>(kM, kQ) = -Eigen::Map<const RowMatrix>(point.spin.torque_phi) * G;
   if (fluid && fluid->loaded != 0)
     by_y.block<3, 4>(kM, kQ) -= Eigen::Map<const RowMatrix>(fluid->moment_phi) * G;
-  if (fluid && fluid->magnetic != 0 && model.field && model.field->count > 0)
+  if (fluid && fluid->magnetic != 0 && model.field && model.field->magnetic.count > 0)
     by_y.block<3, 3>(kM, kP) -= Eigen::Map<const RowMatrix>(fluid->moment_p);
 }
 

@@ -19,7 +19,7 @@
 
 #include "engine/math/types.h"
 #include "engine/section/fluid_section.h"
-#include "engine/section/magnetic_field.h"
+#include "engine/section/outer_field.h"
 #include "engine/section/tendon_section.h"
 
 namespace cprsim {
@@ -39,7 +39,7 @@ struct PointModel {
   double rhoJ[3] = {};      ///< section inertia, kg m
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;
-  const MagneticField* field = nullptr;  ///< around it, if it is magnetised
+  const OuterField* field = nullptr;  ///< around it, if it is magnetised
 };
 
 /// Rotary inertia at a point (engine/section/rotary.h); rotations row-major.

@@ -56,9 +56,8 @@ Method fitting_method(const RodPlan& plan, std::string& why) {
     why = "auto: <space> is collocation's";
     return Method::kCollocation;
   }
-  if (plan.plane && (plan.line_loads || plan.drag)) {
-    why = std::string("auto: in a plane shooting knows no ") +
-          (plan.drag ? "drag" : "load along a rod") + ", and the strain basis is the next fastest";
+  if (plan.plane && !plan.tendons.empty()) {
+    why = "auto: in a plane shooting knows no tendons, and the strain basis is the next fastest";
     return Method::kStrain;
   }
   why = "auto: shooting takes the least time for its accuracy (docs/methods.md)";

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/math/so3.h"
-#include "engine/section/magnetic_load.h"
+#include "engine/section/line_load.h"
 
 namespace cprsim {
 
@@ -24,6 +24,7 @@ void Immersion::place(std::vector<double> inside, const std::vector<MagnetSpec>&
     const Vec3 m = magnetization(inside_[j]);
     Eigen::Map<Vec3>(places_[j].magnetization) = m;
     places_[j].magnetic = m.isZero(0) ? 0 : 1;
+    places_[j].inside = inside_[j];
   }
 }
 
@@ -42,6 +43,7 @@ void Immersion::prepare(const SectionProperties& section, const std::vector<Sect
   wind_ = forcing.wind;
   acts_ = rates.dynamic() || !wind_.isZero(0);
   take_field(forcing.field);
+  take_forces(forcing.lines);
   loaded_ = in_field_ || (!inside_.empty() && !forcing.lines.empty());
   if (loaded_) {
     acts_ = true;
@@ -84,8 +86,16 @@ void Immersion::take_field(const MagneticSources& field) {
   in_field_ = !magnets_.empty() && !field.none();
   if (!in_field_) return;
   dipoles_ = field.dipoles;
-  field_ = view_of(field);
-  field_.dipoles = dipoles_.data();
+  field_.magnetic = view_of(field);
+  field_.magnetic.dipoles = dipoles_.data();
+}
+
+void Immersion::take_forces(const std::vector<LineLoad>& lines) {
+  forces_.clear();
+  for (const LineLoad& line : lines)
+    if (line.law.law >= 0) forces_.push_back(line.law);
+  field_.forces = forces_.data();
+  field_.force_count = static_cast<int>(forces_.size());
 }
 
 double Immersion::magnetic_energy(std::size_t place, const Mat3& R, const Vec3& p,
@@ -99,19 +109,24 @@ double Immersion::magnetic_energy(std::size_t place, const Mat3& R, const Vec3& 
 
 // With exp(phi^) m = m + phi × m + phi × (phi × m) / 2: of -m·B(p) the second-order part is
 // (phi·phi m·B - phi·m phi·B) / 2 - (phi × m)·G dp - dp·H dp / 2.
-Mat6 Immersion::magnetic_stiffness(double inside, const Mat3& R, const Vec3& p) const {
+Mat6 Immersion::outer_stiffness(double inside, const Mat3& R, const Vec3& p) const {
+  using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   Mat6 K = Mat6::Zero();
+  if (!forces_.empty()) {
+    const PlaceForce placed =
+        placed_forces(field_.forces, field_.force_count, inside, load(p.data()));
+    K.bottomRightCorner<3, 3>() = -Eigen::Map<const RowMatrix>(placed.f_p.a);
+  }
   const Vec3 m = R * magnetization(inside);
   if (!in_field_ || m.isZero(0)) return K;
-  const FieldAtPlace here = ::magnetic_field(field_, load(p.data()), load(m.data()));
-  using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const FieldAtPlace here = ::magnetic_field(field_.magnetic, load(p.data()), load(m.data()));
   const Mat3 G = Eigen::Map<const RowMatrix>(here.G.a), H = Eigen::Map<const RowMatrix>(here.H.a);
   const Vec3 B(here.B.x, here.B.y, here.B.z);
   const Mat3 mB = m * B.transpose();
   K.topLeftCorner<3, 3>() = m.dot(B) * Mat3::Identity() - 0.5 * (mB + mB.transpose());
   K.topRightCorner<3, 3>() = -cprsim::hat(m) * G;
   K.bottomLeftCorner<3, 3>() = K.topRightCorner<3, 3>().transpose();
-  K.bottomRightCorner<3, 3>() = -H;
+  K.bottomRightCorner<3, 3>() -= H;
   return K;
 }
 

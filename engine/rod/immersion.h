@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What lies around a rod, for every method: a fluid's force, loads that are spread along it, what a
-// magnetic field does to it, at the places where the rod's balance holds, in the order of its track
-// of positions (engine/section/fluid.h, engine/section/line_load.h,
+// magnetic field does to it, forces by where it is, at the places where the rod's balance holds, in
+// the order of its track of positions (engine/section/fluid.h, engine/section/line_load.h,
 // engine/section/magnetic_load.h).
 #pragma once
 
@@ -10,6 +10,7 @@
 #include "engine/model/rod_spec.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/fluid_section.h"
+#include "engine/section/outer_field.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -41,9 +42,9 @@ class Immersion {
   bool loaded() const { return loaded_; }
 
   /// Null where no field acts on this rod.
-  const MagneticField* field() const { return in_field_ ? &field_ : nullptr; }
+  const OuterField* field() const { return in_field_ || !forces_.empty() ? &field_ : nullptr; }
 
-  bool field_varies() const { return in_field_ && field_.count > 0; }
+  bool field_varies() const { return in_field_ && field_.magnetic.count > 0; }
 
   FluidSection* at(std::size_t place) { return &places_[place]; }
 
@@ -62,15 +63,16 @@ class Immersion {
   double magnetic_energy(std::size_t place, const Mat3& R, const Vec3& p,
                          const MagneticField& field) const;
 
-  /// Second derivative of this energy by (phi, dp), world axes, anywhere on the rod: `inside` as
-  /// for place(). Of the field of the present solve.
-  Mat6 magnetic_stiffness(double inside, const Mat3& R, const Vec3& p) const;
+  /// Second derivative of this energy, and of that of placed forces, by (phi, dp), world axes,
+  /// anywhere on the rod: `inside` as for place(). Of the field of the present solve.
+  Mat6 outer_stiffness(double inside, const Mat3& R, const Vec3& p) const;
 
   void visit(Archive& archive) { archive.doubles(places_); }
 
  private:
   void take_loads(const std::vector<LineLoad>& lines);
   void take_field(const MagneticSources& field);
+  void take_forces(const std::vector<LineLoad>& lines);
   Vec3 magnetization(double inside) const;
 
   std::vector<FluidSection> places_;
@@ -81,7 +83,8 @@ class Immersion {
 
   std::vector<MagnetSpec> magnets_;
   std::vector<MagneticDipole> dipoles_;
-  MagneticField field_;  ///< its dipoles are those above
+  std::vector<PlacedForce> forces_;
+  OuterField field_;  ///< its dipoles and forces are those above
   bool in_field_ = false;
 };
 

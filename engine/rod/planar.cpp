@@ -72,9 +72,28 @@ PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Ma
   place_disks();
   track_.resize(disk_angles_ +
                 (options.rotary_inertia ? static_cast<Eigen::Index>(disks_.size()) : 0));
+  if (options.drag || options.line_loads) place_surroundings();
   forcing_.length = length;
   const Vec3 tangent = plane_.transpose() * X_WBase.R.col(2);
   set_straight(std::atan2(tangent.y(), tangent.x()), plane_.leftCols<2>().transpose() * X_WBase.p);
+}
+
+void PlanarRod::place_surroundings() {
+  around_ = std::make_unique<PlanarImmersion>(stages_.size(), plane_, offset_, height_);
+  if (!options_.line_loads) return;
+  std::vector<double> inside;
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / static_cast<std::size_t>(table_->stages);
+    inside.push_back(0.5 * (grid_[cell] + grid_[cell + 1]));
+  }
+  around_->in_space().place(std::move(inside), options_.magnets);
+}
+
+void PlanarRod::enter(std::size_t cell) {
+  model_.h = (grid_[cell + 1] - grid_[cell]) * forcing_.length;
+  if (!around_) return;
+  model_.first = cell * static_cast<std::size_t>(table_->stages);
+  model_.around = around_->at(model_.first);
 }
 
 void PlanarRod::place_disks() {
@@ -146,11 +165,18 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
                          : CellLaw::kExtensible;
+  double k = model_.k;
+  if (around_) {
+    around_->prepare(section_, rates, forcing_, track_);
+    model_.immersion = around_.get();
+    const Immersion& fluid = around_->in_space();
+    if (fluid.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
+    k += fluid.stiffness();
+  }
   kernel_ = planar_kernel(table_->stages, law_);
   scale_ = {L, K_b_ / (L * L), K_b_ / L};
   // positions carry round-off eps L; inertia turns it into forces eps k L²
   constexpr double kRoundOff = 50 * std::numeric_limits<double>::epsilon();
-  double k = model_.k;
   for (const Disk& disk : disks_)
     k += disk.mass * rates.c_v * rates.c_w / L;
   noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (K_b_ * forcing_.tolerance));
@@ -160,7 +186,8 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
 
 void PlanarRod::update_stage_inputs() {
   const auto n = static_cast<Eigen::Index>(stages_.size());
-  const Vec2 weight = plane_.leftCols<2>().transpose() * (section_.rhoA * forcing_.gravity);
+  const Vec2 weight =
+      plane_.leftCols<2>().transpose() * (section_.weighing_mass() * forcing_.gravity);
   const bool dynamic = rates_.dynamic();
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     PlanarStage& stage = stages_[j];
@@ -219,7 +246,8 @@ void PlanarRod::choose_segments() {
   if (evaluated_)
     for (const PlanarNode& node : nodes_)
       N = std::max(N, std::hypot(node.n[0], node.n[1]));
-  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k, N);
+  const double around = around_ ? around_->in_space().stiffness() : 0;
+  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k + around, N);
   if (!disks_.empty()) {
     double k = model_.k;
     for (const Disk& disk : disks_)
@@ -305,7 +333,7 @@ RodResidual PlanarRod::evaluate(const Port& base, const Port& tip) {
       state = start;
     }
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
-      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+      enter(c);
       kernel_.evaluate(model_, &stages_[c * S], state, state);
       apply_load(c + 1, state);
       nodes_[c + 1] = state;
@@ -314,7 +342,7 @@ RodResidual PlanarRod::evaluate(const Port& base, const Port& tip) {
   section_evaluations_ += static_cast<long>(stages_.size());
   for (const PlanarStage& stage : stages_) {
     add(stage.residual_kappa * scale_.length / noise_);
-    if (law_ == CellLaw::kExtensible)
+    if (lifts_stretch(law_))
       for (double v : stage.residual_v)
         add(v / noise_);
   }
@@ -332,7 +360,7 @@ std::string PlanarRod::row_name(int row) const {
   const int joins = 6 * (segments() - 1);
   if (row < joins) return "join " + std::to_string(row / 6 + 1) + " between segments of " + name_;
   row -= joins;
-  const int each = law_ == CellLaw::kExtensible ? 3 : 1;
+  const int each = lifts_stretch(law_) ? 3 : 1;
   const int law = static_cast<int>(stages_.size()) * each;
   if (row < law) {
     const int cell = row / each / table_->stages;
@@ -343,7 +371,7 @@ std::string PlanarRod::row_name(int row) const {
 }
 
 int PlanarRod::unknown_count() const {
-  return 6 * segments() + static_cast<int>(stages_.size()) * (law_ == CellLaw::kExtensible ? 3 : 1);
+  return 6 * segments() + static_cast<int>(stages_.size()) * (lifts_stretch(law_) ? 3 : 1);
 }
 
 }  // namespace cprsim

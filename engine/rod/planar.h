@@ -9,6 +9,7 @@
 
 #include "engine/model/planar.h"
 #include "engine/rod/planar_cell.h"
+#include "engine/rod/planar_immersion.h"
 #include "engine/rod/shooting.h"
 
 namespace cprsim {
@@ -58,6 +59,7 @@ class PlanarRod final : public RodModel {
   RodSample observe() const override;
   RodField field() const override;
   RodEnergy energy() const override;
+  double magnetic_energy(const MagneticSources& field) const override;
   ThermalEffort thermal_effort() const override;
   std::string row_name(int row) const override;
 
@@ -94,11 +96,16 @@ class PlanarRod final : public RodModel {
   // linearisation
   void start_columns(const Place& base, double* Y) const;
   void apply_load_columns(std::size_t node, const PlanarNode& state, double* Y) const;
+  double weight_of(std::size_t stage) const;
   bool sweep_columns(const Place& base);
   void orthonormalize(std::size_t segment, const PlanarNode& reached, double* Y);
   void close_tip(const Place& tip, const double* Y, CondensedRod& out) const;
   void close_base(const Place& base, CondensedRod& out) const;
 
+  /// Inputs of a cell.
+  void enter(std::size_t cell);
+
+  void place_surroundings();
   void place_disks();
   void pass_disks(std::size_t node, PlanarNode& state) const;
 
@@ -177,6 +184,7 @@ class PlanarRod final : public RodModel {
     double moment = 0;
   };
 
+  std::unique_ptr<PlanarImmersion> around_;  ///< null where nothing lies around it
   std::vector<Disk> disks_;
   Eigen::Index disk_angles_ = 0;  ///< where theirs begin, with rotary inertia
   long section_evaluations_ = 0;

@@ -20,12 +20,24 @@ struct PlanarNode {
   double theta, p[2], n[2], m, c, s;
 };
 
+/// What lies around a section (engine/rod/planar_immersion.h): force and moment that n_s and m_s
+/// gain, and their derivatives by p and theta.
+struct PlanarAround {
+  double n[2], n_p[4], n_theta[2], m, m_p[2], m_theta;
+};
+
+class PlanarImmersion;
+
 /// What all cells of a rod share during one solve.
 struct PlanarModel {
   const ArcTableau* table = nullptr;
   double h = 0;                 ///< cell length, m
   double C_b = 0, C_v[2] = {};  ///< compliances of bending; of stretch C_a and shear C_s
   double k = 0, k_J = 0;        ///< N/m²; N
+
+  PlanarImmersion* immersion = nullptr;  ///< for the laws of a fluid
+  const PlanarAround* around = nullptr;  ///< of the cell's stages
+  std::size_t first = 0;                 ///< the first of these
 };
 
 struct PlanarStage {

@@ -58,7 +58,7 @@ bool eliminate(Row<W>* A) {
 // Columns: lifted unknowns first, then the columns of Y.
 template <int S, CellLaw law, int NC>
 bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* dU) {
-  constexpr int L = law == CellLaw::kExtensible ? 3 * S : S;
+  constexpr int L = lifts_stretch(law) ? 3 * S : S;
   constexpr int W = (L + NC + 3) / 4 * 4;
   constexpr int kAffine = L + (NC == kPlanarNarrow ? 3 : 6);
   using R = Row<W>;
@@ -95,7 +95,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
         for (int c = 0; c < W; ++c)
           tau[j][i].r[c] = by_theta[i] * theta[j].r[c];
     }
-    if constexpr (law == CellLaw::kExtensible) {
+    if constexpr (lifts_stretch(law)) {
       tau[j][0].r[S + 2 * j] += at.c;
       tau[j][1].r[S + 2 * j] += at.s;
       tau[j][0].r[S + 2 * j + 1] -= at.s;
@@ -103,13 +103,21 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
     }
   }
   R p[S][2] = {}, n[S][2], m_s[S] = {};
-  const bool inertia = M.k != 0;
+  const bool inertia = M.k != 0 || immersed(law);
   if (inertia)
     for (int j = 0; j < S; ++j)
       for (int i = 0; i < 2; ++i) {
         p[j][i] = y[1 + i];
         for (int k = 0; k < S; ++k)
           add(p[j][i], H.a[j][k], tau[k][i]);
+      }
+  [[maybe_unused]] R around[S][2];
+  if constexpr (immersed(law))
+    for (int j = 0; j < S; ++j)
+      for (int i = 0; i < 2; ++i) {
+        const PlanarAround& at = M.around[j];
+        around[j][i] = sum(at.n_p[2 * i], p[j][0], at.n_p[2 * i + 1], p[j][1]);
+        add(around[j][i], at.n_theta[i], theta[j]);
       }
   for (int j = 0; j < S; ++j) {
     const PlanarStage& at = st[j];
@@ -118,11 +126,19 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
       if (inertia)
         for (int k = 0; k < S; ++k)
           add(n[j][i], H.a[j][k] * M.k, p[k][i]);
+      if constexpr (immersed(law))
+        for (int k = 0; k < S; ++k)
+          add(n[j][i], H.a[j][k], around[k][i]);
     }
     m_s[j] = sum(at.n[0], tau[j][1], -at.n[1], tau[j][0]);
     add(m_s[j], at.tau[1], n[j][0]);
     add(m_s[j], -at.tau[0], n[j][1]);
     if (M.k_J != 0) add(m_s[j], M.k_J, theta[j]);
+    if constexpr (immersed(law)) {
+      add(m_s[j], M.around[j].m_theta, theta[j]);
+      for (int i = 0; i < 2; ++i)
+        add(m_s[j], M.around[j].m_p[i], p[j][i]);
+    }
   }
   R rows[L];
   for (int j = 0; j < S; ++j) {
@@ -134,7 +150,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
       rows[j].r[c] = -M.C_b * m.r[c];
     rows[j].r[j] += 1;
     rows[j].r[kAffine] += at.residual_kappa;
-    if constexpr (law == CellLaw::kExtensible) {
+    if constexpr (lifts_stretch(law)) {
       const double n_t = at.c * at.n[0] + at.s * at.n[1], n_d = at.c * at.n[1] - at.s * at.n[0];
       R& stretch = rows[S + 2 * j];
       R& shear = rows[S + 2 * j + 1];
@@ -158,6 +174,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
     for (int i = 0; i < 2; ++i) {
       add(y[1 + i], hb, tau[j][i]);
       if (inertia) add(y[3 + i], hb * M.k, p[j][i]);
+      if constexpr (immersed(law)) add(y[3 + i], hb, around[j][i]);
     }
     add(y[5], hb, m_s[j]);
   }
@@ -178,7 +195,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
 
 template <int S, CellLaw law>
 constexpr PlanarKernel make_kernel() {
-  return {law == CellLaw::kExtensible ? 3 * S : S, nullptr, linearize<S, law, kPlanarNarrow>,
+  return {lifts_stretch(law) ? 3 * S : S, nullptr, linearize<S, law, kPlanarNarrow>,
           linearize<S, law, kPlanarWide>};
 }
 
@@ -196,11 +213,13 @@ const PlanarKernel& CPRSIM_PLANAR_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kKirchhoff>[stages - 1];
     case CellLaw::kExtensibleStatic:
       return kKernels<CellLaw::kExtensibleStatic>[stages - 1];
+    case CellLaw::kKirchhoffFluid:
+      return kKernels<CellLaw::kKirchhoffFluid>[stages - 1];
+    case CellLaw::kExtensibleFluid:
+      return kKernels<CellLaw::kExtensibleFluid>[stages - 1];
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
     case CellLaw::kExtensibleGeneral:
-    case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
-    case CellLaw::kExtensibleFluid:
     case CellLaw::kTendons:
     case CellLaw::kTendonsFluid:  // not in a plane
       break;

@@ -166,7 +166,7 @@ bool PlanarRod::sweep_columns(const Place& base) {
     std::copy_n(Y, 6 * width, &start_columns_[g * 6 * width]);
     if (g == 0) apply_load_columns(0, starts_.front(), Y);
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
-      model_.h = (grid_[c + 1] - grid_[c]) * forcing_.length;
+      enter(c);
       if (!linearize(model_, &stages_[c * S], Y, &cell_directions_[c * lifted * width]))
         return false;
       apply_load_columns(c + 1, nodes_[c + 1], Y);
@@ -330,7 +330,7 @@ void PlanarRod::move(double alpha) {
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const double* d = &lifted_direction_[j / S * lifted];
     stages_[j].kappa = kept_lifted_[3 * j] + alpha * d[j % S];
-    if (law_ == CellLaw::kExtensible)
+    if (lifts_stretch(law_))
       for (std::size_t i = 0; i < 2; ++i)
         stages_[j].v[i] = kept_lifted_[3 * j + 1 + i] + alpha * d[S + 2 * (j % S) + i];
   }

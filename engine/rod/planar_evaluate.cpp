@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/rod/planar_cell.h"
+#include "engine/rod/planar_immersion.h"
 #include "engine/rod/planar_steps.h"
 
 namespace cprsim {
@@ -46,7 +47,7 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
   // (5) explicit in statics, (1)
   for (int j = 0; j < S; ++j) {
     PlanarStage& at = st[j];
-    if constexpr (law != CellLaw::kExtensible) {
+    if constexpr (!lifts_stretch(law)) {
       at.v[0] = at.v0[0];
       at.v[1] = at.v0[1];
     }
@@ -70,6 +71,12 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
       st[j].p[i] = p;
       n_s[j][i] = M.k * p + st[j].b[i];
     }
+  if constexpr (immersed(law))
+    for (int j = 0; j < S; ++j) {
+      M.immersion->evaluate(M.first + static_cast<std::size_t>(j), st[j]);
+      for (int i = 0; i < 2; ++i)
+        n_s[j][i] += M.around[j].n[i];
+    }
   // (3)
   for (int j = 0; j < S; ++j) {
     for (int i = 0; i < 2; ++i) {
@@ -79,6 +86,7 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
       st[j].n[i] = n;
     }
     m_s[j] = st[j].n[0] * tau[j][1] - st[j].n[1] * tau[j][0] + M.k_J * st[j].theta + st[j].b_J;
+    if constexpr (immersed(law)) m_s[j] += M.around[j].m;
   }
   // (4), (5)
   for (int j = 0; j < S; ++j) {
@@ -88,7 +96,7 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
       m += H.a[j][k] * m_s[k];
     at.m = m;
     at.residual_kappa = at.kappa - at.kappa0 - M.C_b * m;
-    if constexpr (law == CellLaw::kExtensible) {
+    if constexpr (lifts_stretch(law)) {
       at.residual_v[0] = at.v[0] - at.v0[0] - M.C_v[0] * (at.c * at.n[0] + at.s * at.n[1]);
       at.residual_v[1] = at.v[1] - at.v0[1] - M.C_v[1] * (at.c * at.n[1] - at.s * at.n[0]);
     }
@@ -122,11 +130,13 @@ PlanarEvaluate planar_evaluate(int stages, CellLaw law) {
       return kEvaluations<CellLaw::kKirchhoff>[stages - 1];
     case CellLaw::kExtensibleStatic:
       return kEvaluations<CellLaw::kExtensibleStatic>[stages - 1];
+    case CellLaw::kKirchhoffFluid:
+      return kEvaluations<CellLaw::kKirchhoffFluid>[stages - 1];
+    case CellLaw::kExtensibleFluid:
+      return kEvaluations<CellLaw::kExtensibleFluid>[stages - 1];
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
     case CellLaw::kExtensibleGeneral:
-    case CellLaw::kKirchhoffFluid:  // a scene in a plane has no drag by shooting
-    case CellLaw::kExtensibleFluid:
     case CellLaw::kTendons:
     case CellLaw::kTendonsFluid:  // not in a plane
       break;

@@ -119,7 +119,7 @@ void PlanarRod::start_tracks_moving() {
         turn += h * table_->a[j][k] * d[k];
       const Vec2 t(at.c, at.s), across(-at.s, at.c), force(at.n[0], at.n[1]);
       Vec2 dv = Vec2::Zero();
-      if (law_ == CellLaw::kExtensible) dv = {d[S + 2 * j], d[S + 2 * j + 1]};
+      if (lifts_stretch(law_)) dv = {d[S + 2 * j], d[S + 2 * j + 1]};
       if (law_ == CellLaw::kExtensibleStatic)
         dv = {model_.C_v[0] * (t.dot(dn) + turn * across.dot(force)),
               model_.C_v[1] * (across.dot(dn) - turn * t.dot(force))};
@@ -213,6 +213,7 @@ void PlanarRod::visit(Archive& archive) {
   archive.resized_doubles(starts_, static_cast<std::size_t>(cells_));
   segment_first_ = segment_starts(static_cast<int>(starts_.size()), cells_);
   archive.doubles(nodes_);
+  if (around_) around_->in_space().visit(archive);
   track_.visit(archive);
 }
 
@@ -254,6 +255,20 @@ RodSample PlanarRod::observe() const {
   return sample;
 }
 
+double PlanarRod::weight_of(std::size_t stage) const {
+  const std::size_t S = static_cast<std::size_t>(table_->stages), cell = stage / S;
+  return (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[stage % S];
+}
+
+double PlanarRod::magnetic_energy(const MagneticSources& sources) const {
+  if (!around_ || options_.magnets.empty()) return 0;
+  const MagneticField field = view_of(sources);
+  double energy = 0;
+  for (std::size_t j = 0; j < stages_.size(); ++j)
+    energy += weight_of(j) * around_->magnetic_energy(j, stages_[j], field);
+  return energy;
+}
+
 ThermalEffort PlanarRod::thermal_effort() const {
   ThermalEffort effort;
   const auto S = static_cast<std::size_t>(table_->stages);
@@ -275,8 +290,9 @@ RodEnergy PlanarRod::energy() const {
     return 0.5 *
            (K_b_ * strain[0] * strain[0] + EA * stretched * stretched + GA * strain[2] * strain[2]);
   };
-  const Vec2 weight = plane_.leftCols<2>().transpose() * (section_.rhoA * forcing_.gravity);
-  const double at_height = height_ * section_.rhoA * plane_.col(2).dot(forcing_.gravity);
+  const double weighing = section_.weighing_mass();
+  const Vec2 weight = plane_.leftCols<2>().transpose() * (weighing * forcing_.gravity);
+  const double at_height = height_ * weighing * plane_.col(2).dot(forcing_.gravity);
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const std::size_t cell = j / S;
     const double w = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
@@ -292,6 +308,13 @@ RodEnergy PlanarRod::energy() const {
     e.damping_power += w * B_b_ * kappa_t * kappa_t;
     if (extensible_)
       e.damping_power += w * B_v_.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
+  }
+  if (around_) {
+    std::vector<double> weights;
+    for (std::size_t j = 0; j < stages_.size(); ++j)
+      weights.push_back(weight_of(j));
+    around_->add_powers(weights, stages_, track_, e);
+    e.magnetic = magnetic_energy(forcing_.field);
   }
   for (std::size_t d = 0; d < disks_.size(); ++d) {
     const Disk& disk = disks_[d];

@@ -25,6 +25,7 @@
 #include "engine/rod/rod_end.h"
 #include "engine/rod/shape.h"
 #include "engine/section/magnetic_sources.h"
+#include "engine/section/outer_field.h"
 #include "engine/section/section.h"
 #include "engine/time/scheme.h"
 
@@ -54,6 +55,7 @@ struct LineLoad {
   double from = 0, to = 1;  ///< fractions of the length; nodes of the grid are there
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< N/m, N
   bool follower = false;
+  PlacedForce law;  ///< instead of force and torque, where it has a law
 };
 
 /// What a tendon's motor prescribes: a tension (N), or how much it has pulled in (m).

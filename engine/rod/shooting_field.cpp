@@ -21,7 +21,7 @@ RodField ShootingRod::field() const {
     f.add_tendons(stiffness_of(tendons_->at(j)), tendons_->locked_at(j));
   for (std::size_t j = 0; fluid_.field() && j < stages_.size(); ++j) {
     const std::size_t cell = j / static_cast<std::size_t>(table_->stages);
-    f.magnetic.push_back(fluid_.magnetic_stiffness(0.5 * (grid_[cell] + grid_[cell + 1]),
+    f.magnetic.push_back(fluid_.outer_stiffness(0.5 * (grid_[cell] + grid_[cell + 1]),
                                                    f.points[j].R, vec(stages_[j].p)));
   }
   f.base = starts_.front();

@@ -310,7 +310,7 @@ RodField StrainRod::field() const {
           Vec3 p = Vec3::Zero();
           for (Eigen::Index i = 0; i < G; ++i)
             p += weights[i] * points_[first + static_cast<std::size_t>(i)].p;
-          f.magnetic.push_back(fluid_.magnetic_stiffness(begin + 0.5 * width, point.R, p));
+          f.magnetic.push_back(fluid_.outer_stiffness(begin + 0.5 * width, point.R, p));
         }
         if (!tendons_) continue;
         const VecX phi = legendre(x, rule_.order);

@@ -75,6 +75,16 @@ double lowered_by_disks(double omega, const RodSpec& spec, double EI, double L) 
   return 1 / std::sqrt(sum);
 }
 
+/// Moments of inertia across the tangent, of sections and disks, over mass times L²: where sections
+/// do not vary and nothing is carried I / (A L²).
+double rotary_number(const RodSpec& spec, const SectionProperties& s, double mass, double L) {
+  if (mass <= 0) return 0;
+  double inertia = std::max(s.rhoJ.x(), s.rhoJ.y()) * L;
+  for (const DiskSpec& disk : spec.disks)
+    inertia += disk.mass * disk.radius * disk.radius / 4;
+  return inertia / (mass * L * L);
+}
+
 RodFacts rod_facts(const Robot& robot, const RobotRod& rod, const StepPlan& plan) {
   const Scene& scene = *robot.scene;
   RodFacts f;
@@ -118,6 +128,7 @@ RodFacts rod_facts(const Robot& robot, const RobotRod& rod, const StepPlan& plan
     f.gravity_number += disk.mass * 9.81 * L * L / EI;
   f.shear_number = s.K_se.x() > 0 ? EI / (s.K_se.x() * L * L) : 0;
   f.extension_number = s.K_se.z() > 0 ? EI / (s.K_se.z() * L * L) : 0;
+  f.rotary_number = rotary_number(*rod.spec, s, f.mass, L);
   f.damping_ratio = omega * std::max(s.B_bt.x(), s.B_bt.y()) / (2 * EI);
   if (rod.spec->drag) f.drag_number = drag_number(*rod.spec, s, scene, L);
   if (!rod.spec->magnets.empty())

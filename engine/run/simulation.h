@@ -64,7 +64,8 @@ struct RodFacts {
   std::string rule;             ///< of its pieces: "gauss6", "legendre"
   int elements = 0, order = 0;  ///< pieces, and the order of the rule
   int segments = 0, unknowns = 0;
-  double gravity_number = 0, shear_number = 0, extension_number = 0, damping_ratio = 0;
+  double gravity_number = 0, shear_number = 0, extension_number = 0, rotary_number = 0,
+         damping_ratio = 0;
   /// Of a fluid, a magnetic field, heat that the scene describes, listed or not.
   double drag_number = 0, magnetic_number = 0, thermal_number = 0;
 };

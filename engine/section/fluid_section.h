@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What lies around a section of a rod: a fluid (equations in engine/section/fluid.h), loads that
 // are spread along the rod (engine/section/line_load.h), a magnetic field
-// (engine/section/magnetic_load.h).
+// (engine/section/magnetic_load.h), forces by where it is
+// (engine/section/place_laws.h).
 #pragma once
 
 namespace cprsim {
@@ -23,6 +24,8 @@ struct FluidSection {
   double magnetic;          ///< 0 without a moment of its own
   double magnetization[3];  ///< per length, section axes, A m
   double moment_p[9];       ///< of moment, by position; only read in a field that varies
+
+  double inside;  ///< where on the rod, a fraction of its length: which placed forces act
 };
 
 }  // namespace cprsim

@@ -7,6 +7,8 @@
 
 #include "engine/section/fluid.h"
 #include "engine/section/magnetic_load.h"
+#include "engine/section/outer_field.h"
+#include "engine/section/place_laws.h"
 
 namespace {  // NOLINT: as small_vector.h
 
@@ -23,10 +25,12 @@ inline void add_line_load(const M3& R, cprsim::FluidSection& f) {
 
 /// All that lies around a section. @param field null without any
 inline void evaluate_surroundings(double c_v, double c_w, V3 p, const M3& R,
-                                  const cprsim::MagneticField* field, cprsim::FluidSection& f) {
+                                  const cprsim::OuterField* field, cprsim::FluidSection& f) {
   evaluate_fluid(c_v, c_w, p, {R.a[2], R.a[5], R.a[8]}, f);
   if (f.loaded != 0) add_line_load(R, f);
-  if (field && f.magnetic != 0) add_magnetic_load(*field, p, R, f);
+  if (!field) return;
+  if (f.magnetic != 0) add_magnetic_load(field->magnetic, p, R, f);
+  if (field->force_count > 0) add_placed_forces(field->forces, field->force_count, p, f);
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ class PlanarCheck {
       check(scene_.rods[k]);
     for (const LoadSpec& load : scene_.loads)
       check(load);
+    for (std::size_t k = 0; k < scene_.tendons.size(); ++k)
+      check(scene_.tendons[k], static_cast<int>(k));
     for (const MagneticFieldSpec& field : scene_.magnetic_fields)
       check(field);
     velocities();
@@ -116,14 +118,6 @@ class PlanarCheck {
     return true;
   }
 
-  /// As choose_method() will decide: left to the program it is another where shooting cannot.
-  bool by_shooting(const RodSpec& rod) const {
-    const SolverSpec& solver = scene_.solver;
-    const Method method = rod.method.value_or(solver.method);
-    return method == Method::kShooting ||
-           (method == Method::kAuto && (solver.points || solver.integrator));
-  }
-
   void check(const RodSpec& rod) {
     if (rod.sections.size() > 1)
       complain(rod.place, 10,
@@ -131,10 +125,6 @@ class PlanarCheck {
     if (!rod.rest_curvature.isZero() || !rod.rest_samples.empty())
       complain(rod.place, 10,
                "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
-    if (scene_.effects.has(Effect::kDrag) && rod.drag && !rod.lacks("drag") && by_shooting(rod))
-      complain(rod.place, 10,
-               "rod '" + rod.name + "' has drag, which shooting in a plane does not know",
-               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
     if (scene_.effects.has(Effect::kThermal) && rod.temperature && !rod.lacks("thermal") &&
         !rod.temperature->gradient.isZero(0))
       complain(rod.place, 10,
@@ -174,10 +164,6 @@ class PlanarCheck {
 
   void check_magnets(const RodSpec& rod) {
     if (rod.magnets.empty()) return;
-    if (by_shooting(rod))
-      complain(rod.place, 10,
-               "rod '" + rod.name + "' is magnetised, which shooting in a plane does not know",
-               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
     for (const MagnetSpec& magnet : rod.magnets)
       if (leaves(axes_of(rod) * magnet.moment))
         complain(rod.place, 10, "the magnetisation of rod '" + rod.name + "' leaves the plane");
@@ -196,13 +182,7 @@ class PlanarCheck {
   }
 
   void check(const LoadSpec& load) {
-    if (load.to) {
-      const RodSpec& rod = scene_.rods[at(load.rod)];
-      if (by_shooting(rod))
-        complain(load.place, 11,
-                 "a load along rod '" + rod.name + "', which shooting in a plane does not know",
-                 "leave <planar> out, or take method=\"strain\" or \"collocation\"");
-    }
+    check_law(load);
     Mat3 R = load.R_expressed;
     if (load.follower && load.rod < 0) R = in_world(load.at).R * R;
     if (load.follower && load.rod >= 0) R = axes_of(scene_.rods[at(load.rod)]) * R;
@@ -211,6 +191,45 @@ class PlanarCheck {
       complain(load.place, 11, "the force " + words(F) + " N leaves the plane");
     else if (turns(T))
       complain(load.place, 11, "the torque " + words(T) + " N m is not about the plane's normal");
+  }
+
+  /// As choose_method() will decide: left to the program it is another where shooting cannot.
+  bool by_shooting(const RodSpec& rod) const {
+    const SolverSpec& solver = scene_.solver;
+    const Method method = rod.method.value_or(solver.method);
+    return method == Method::kShooting ||
+           (method == Method::kAuto && (solver.points || solver.integrator));
+  }
+
+  void check(const TendonSpec& tendon, int index) {
+    const RodSpec& rod = scene_.rods[at(tendon.rod)];
+    const std::string name = "tendon '" + tendon.name + "'";
+    if (by_shooting(rod))
+      complain(tendon.place, 14,
+               name + " is along rod '" + rod.name + "', by shooting, which knows none in a plane",
+               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
+    for (const double s : {0., 0.25, 0.5, 0.75, 1.}) {
+      const Vec2 r = tendon_offset(tendon, s, s).r;
+      if (!leaves(axes_of(rod) * Vec3(r.x(), r.y(), 0))) continue;
+      complain(tendon.place, 14, name + " runs beside the plane that its rod stays in");
+      break;
+    }
+    for (const DriveSpec& drive : scene_.drives)
+      if (drive.tendon == index && drive.quantity == DriveQuantity::kDisplacement)
+        r_.report
+            .at(Severity::kError, "E520", drive.place, 13,
+                "a tendon of given displacement in a planar scene is not available in this version")
+            .suggestion = "leave <planar> out, or drive the tension";
+  }
+
+  void check_law(const LoadSpec& load) {
+    if (load.law < 0) return;
+    const double* x = load.law_values.data();
+    for (const LawValue& value : kPlaceLaws[at(load.law)].values) {
+      if (value.kind == LawValue::kDirection && leaves(Vec3(x[0], x[1], x[2])))
+        complain(load.place, 11, "the direction of a load along a rod leaves the plane");
+      x += value.size();
+    }
   }
 
   void velocities() {

@@ -246,6 +246,35 @@ void resolve_axes(Reading& r, const Node& node, int scope, const std::vector<boo
   }
 }
 
+// a force by where the section is, instead of numbers
+void read_law(Reading& r, const Node& node, bool numbers, LoadSpec& load) {
+  for (std::size_t i = 0; i < std::size(kPlaceLaws); ++i) {
+    const Node* law = node.child(kPlaceLaws[i].word);
+    if (!law) continue;
+    if (numbers || load.law >= 0)
+      r.report.error("E310", *law, "a load is a force and a torque, or of one law: give one");
+    if (!load.to)
+      r.report.error("E310", *law, "<" + law->name + "> acts along a rod: give along, not at");
+    load.law = static_cast<int>(i);
+    double* to = load.law_values.data();
+    for (const LawValue& value : kPlaceLaws[i].values) {
+      if (!value.word) break;
+      const Node* given = law->child(value.word);
+      if (value.kind == LawValue::kPositive) {
+        *to = number_of(given, 0);
+      } else {
+        Vec3 v = vec3_of(given, Vec3::Zero());
+        if (value.kind == LawValue::kDirection) {
+          if (given && v.isZero(0)) r.report.error("E306", *given, "a direction is not zero");
+          if (!v.isZero(0)) v.normalize();
+        }
+        Eigen::Map<Vec3>{to} = v;
+      }
+      to += value.size();
+    }
+  }
+}
+
 void read_load(Reading& r, const Node& node, int scope, const std::vector<bool>& fixed) {
   LoadSpec load;
   load.place = node.place;
@@ -256,7 +285,9 @@ void read_load(Reading& r, const Node& node, int scope, const std::vector<bool>&
   bool given = false;
   for (const auto& child : node.children)
     given = given || child->name == "force" || child->name == "torque";
-  if (!given) r.report.missing("E303", node, describe(node) + " has no <force> and no <torque>");
+  read_law(r, node, given, load);
+  if (!given && load.law < 0)
+    r.report.missing("E303", node, describe(node) + " has no <force> and no <torque>");
   load.has_profile = read_time_function(r, node, load.profile);
   r.scene.loads.push_back(std::move(load));
 }

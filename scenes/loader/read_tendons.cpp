@@ -85,9 +85,6 @@ void read_tendon(Reading& r, const Node& node, int scope) {
                          "a tendon ends at a fraction of the length, above 0 and at most 1");
   }
   read_route(r, node, tendon);
-  if (r.scene.planar_normal)
-    r.report.error("E520", node, "tendons in a planar scene are not available in this version",
-                   "leave <planar> out: the spatial model takes it");
   r.scene.tendons.push_back(std::move(tendon));
 }
 

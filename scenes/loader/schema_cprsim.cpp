@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The flexible half of the table: the elements of the namespace urn:cprsim:1.
+#include "engine/model/place_law.h"
 #include "scenes/loader/schema.h"
 
 namespace cprsim {
@@ -285,6 +286,14 @@ std::vector<ElementRule> output_elements() {
 
 std::vector<ElementRule> cprsim_elements() {
   std::vector<ElementRule> all = rod_elements();
+  for (const PlaceLaw& law : kPlaceLaws) {
+    all.push_back({"cprsim:load", law.word, "", T::kGroup, "", '?', S::kSupported, law.doc});
+    for (const LawValue& value : law.values)
+      if (value.word)
+        all.push_back({law.word, value.word, "",
+                       value.kind == LawValue::kPositive ? T::kPositive : T::kVec3, value.unit, '1',
+                       S::kSupported, value.doc});
+  }
   for (const auto& part : {run_elements(), action_elements(), output_elements()})
     all.insert(all.end(), part.begin(), part.end());
   return all;

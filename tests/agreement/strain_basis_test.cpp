@@ -108,16 +108,5 @@ TEST(Auto, TakesTheMethodWhoseResolutionIsGiven) {
   EXPECT_EQ(robot.rods[0].choice.why, "the rod asks for it; cut for 1e-09 m");
 }
 
-TEST(Auto, TakesAMethodThatCan) {
-  Scene scene;
-  scene.rods.push_back(steel_rod(0.4, 1e-3));
-  scene.planar_normal = Vec3(0, 1, 0);
-  EXPECT_EQ(build_robot(scene).rods[0].choice.method, Method::kShooting);
-  add_load(scene, 0.2, {1, 0, 0}).to = 0.7;
-  const Robot robot = build_robot(scene);
-  EXPECT_EQ(robot.rods[0].choice.method, Method::kStrain);
-  EXPECT_NE(robot.rods[0].choice.why.find("load along a rod"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace cprsim

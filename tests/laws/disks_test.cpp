@@ -275,5 +275,16 @@ TEST_P(Disks, LeaveTheOrderOfTheSchemeAsItIs) {
   EXPECT_GT(std::log2(coarse / fine), 1.8) << coarse << " " << fine;
 }
 
+// what `cprsim info` judges rotary inertia by: a uniform rod's I / (A L²), and disks of the rod's
+// mass and of a radius R: (r² + R²) / 8 L²
+TEST(DisksOfARod, CountInItsRotaryInertia) {
+  Scene scene = wire();
+  const double L2 = kLength * kLength, r = kRadius, R = 0.03;
+  EXPECT_NEAR(Simulation(scene).facts().rods[0].rotary_number, r * r / (4 * L2), 1e-12);
+  const double mass = section_properties(scene.rods[0]).rhoA * kLength;
+  scene.rods[0].disks = {{0.5, mass / 2, R}, {1, mass / 2, R}};
+  EXPECT_NEAR(Simulation(scene).facts().rods[0].rotary_number, (r * r + R * R) / (8 * L2), 1e-12);
+}
+
 }  // namespace
 }  // namespace cprsim

@@ -199,7 +199,7 @@ TEST_P(Magnetic, BalancesTheEnergyOfASwing) {
 
 // next to a dipole, in the plane of the rod, the dipole and the moments
 TEST(MagneticField, InAPlaneIsTheSame) {
-  for (Method method : {Method::kStrain, Method::kCollocation}) {
+  for (Method method : kEveryMethod) {
     Scene scene = magnetic_wire({0.1, 0, kMoment}, uniform({4, 0, -1}));
     scene.magnetic_fields.push_back(dipole({0.15, 0, 0.3}, {-2e3, 0, 4e3}));
     switch_on(scene, {Effect::kExtension, Effect::kShear});

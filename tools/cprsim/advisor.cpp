@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers: gravity ρAgL³/EI, shear EI/(κGA L²), extension and rotary inertia I/(A L²), damping
+// The numbers: gravity ρAgL³/EI, shear EI/(κGA L²), extension I/(A L²), rotary inertia of
+// sections and disks J/(M L²), damping
 // the ratio ζ₁ of the first bending mode, drag the largest ratio of a fluid's forces to the rod's
 // own, magnetic M B L²/EI, thermal the largest of elongation, turn and what clamps make of it
 // (engine/run/facts.cpp).
@@ -49,7 +50,7 @@ std::vector<AdviceLine> advise(const Scene& scene, const RodFacts& rod) {
   if (rod.magnetic_number > 0) add(Effect::kMagnetic, "M B L^2 / EI", rod.magnetic_number);
   if (rod.thermal_number > 0) add(Effect::kThermal, "alpha T, alpha g L", rod.thermal_number);
   if (scene.simulation.mode == Mode::kDynamic) {
-    add(Effect::kRotaryInertia, "I / (A L^2)", rod.extension_number);
+    add(Effect::kRotaryInertia, "J / (M L^2)", rod.rotary_number);
     add(Effect::kDamping, "zeta_1", rod.damping_ratio);
   }
   return lines;

@@ -30,10 +30,10 @@ struct RodGroup {
 bool alike(const RodFacts& a, const RodFacts& b) {
   const auto numbers = [](const RodFacts& r) {
     return std::vector<double>{
-        r.mass,          r.bending_x,        r.bending_y,     r.torsion,         r.axial,
-        r.shear_x,       r.first_frequency,  r.buckling_load, r.growth_exponent, r.gravity_number,
-        r.shear_number,  r.extension_number, r.damping_ratio, r.drag_number,     r.magnetic_number,
-        r.thermal_number};
+        r.mass,           r.bending_x,        r.bending_y,     r.torsion,         r.axial,
+        r.shear_x,        r.first_frequency,  r.buckling_load, r.growth_exponent, r.gravity_number,
+        r.shear_number,   r.extension_number, r.damping_ratio, r.drag_number,     r.magnetic_number,
+        r.thermal_number, r.rotary_number};
   };
   const auto pieces = [](const RodFacts& r) {
     return std::tuple(r.method, r.method_reason, r.rule, r.elements, r.order, r.segments);

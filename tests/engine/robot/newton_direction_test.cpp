@@ -118,6 +118,23 @@ TEST(NewtonDirection, IsExactInAMagneticField) {
   }
 }
 
+TEST(NewtonDirection, IsExactOnAFoundation) {
+  for (bool stretches : {false, true}) {
+    Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
+    if (stretches) set_all_effects(scene);
+    LoadSpec springs;
+    springs.rod = 1;
+    springs.to = 1;
+    springs.law = 0;
+    springs.law_values = {40, 0.1, -0.2, 0.3, 0.36, 0.48, -0.8};
+    scene.loads.push_back(springs);
+    expect_exact(scene, {}, "statics");
+    expect_exact(scene, {Rates::kBackwardEuler}, "dynamics");
+    scene.effects.set(Effect::kDrag, true);
+    expect_exact(scene, {Rates::kGeneralizedAlpha}, "dynamics in a fluid");
+  }
+}
+
 TEST(NewtonDirection, IsExactForAHeatedRod) {
   Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
   set_all_effects(scene);

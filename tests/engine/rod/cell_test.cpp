@@ -111,7 +111,7 @@ Cell make_cell(const Case& c, unsigned seed) {
     put(f.magnetization, numbers.vec3());
   }
   static const MagneticDipole dipole{{3, -2, 2.5}, {4e7, 7e7, -3e7}};
-  static const MagneticField field{{0.2, -0.3, 0.1}, &dipole, 1};
+  static const OuterField field{{{0.2, -0.3, 0.1}, &dipole, 1}};
   if (immersed(c.law)) {
     M.loaded = true;
     M.field = &field;

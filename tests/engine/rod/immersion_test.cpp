@@ -31,7 +31,7 @@ TEST(Immersion, MagneticStiffnessIsTheSecondDerivativeOfTheEnergy) {
       differences(i, j) =
           (energy(a + b) - energy(a - b) - energy(b - a) + energy(-a - b)) / (4 * kStep * kStep);
     }
-  const Mat6 K = around.magnetic_stiffness(0.5, R, p);
+  const Mat6 K = around.outer_stiffness(0.5, R, p);
   EXPECT_GT(K.topRightCorner(3, 3).norm(), 0.01 * K.norm());
   EXPECT_LT((K - differences).norm(), 1e-3 * K.norm());
   EXPECT_LT((K - K.transpose()).norm(), 1e-14 * K.norm());

@@ -7,6 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
+#include "engine/math/so3.h"
+#include "engine/rod/planar_immersion.h"
 #include "tests/engine/robot/sample_scenes.h"
 #include "tests/support/finite_difference.h"
 
@@ -33,6 +37,7 @@ struct Cell {
   std::vector<PlanarStage> stages;
   PlanarNode start{};
   PlanarKernel kernel{};
+  std::shared_ptr<PlanarImmersion> immersion;
 
   int lifted() const { return kernel.lifted; }
 
@@ -63,12 +68,53 @@ PlanarNode node_of(const Vec6& v) {
   return {v[0], {v[1], v[2]}, {v[3], v[4]}, v[5], std::cos(v[0]), std::sin(v[0])};
 }
 
+/// A current, what follows the sections, springs, a dipole and a magnetisation in the plane.
+void immerse(Cell& cell, Numbers& numbers) {
+  const std::size_t S = cell.stages.size();
+  const Mat3 plane = exp_so3({0.3, -0.7, 1.1});
+  Mat3 offset;
+  offset << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // tangent along e1, x along e2
+  const double height = 0.3;
+  cell.immersion = std::make_shared<PlanarImmersion>(S, plane, offset, height);
+  cell.immersion->in_space().place(std::vector<double>(S, 0.5), {{0, 1, {0.4, 0, 0.7}}});
+  SectionProperties section;
+  section.fluid = {0.8, 0.3, 0.6, 0.9};
+  StageRates rates;
+  rates.c_v = 1.3;
+  rates.c_w = 0.7;
+  RodForcing forcing;
+  forcing.wind = plane * Vec3(3, -2, 0);
+  LineLoad follower{0, 1, Vec3(0.6, 0, -0.4), Vec3(0, 0.5, 0), true, {}},
+      springs{0, 1, Vec3::Zero(), Vec3::Zero(), false, {}};
+  springs.law.law = 0;
+  springs.law.values[0] = 1.7;
+  Eigen::Map<Vec3>{springs.law.values + 4} = plane * Vec3(0.6, 0.8, 0);
+  forcing.lines = {follower, springs};
+  const Vec3 at = plane * Vec3(6, -5, height), moment = plane * Vec3(4e8, 3e8, 0);
+  forcing.field.uniform = plane * Vec3(0.4, -0.3, 0);
+  forcing.field.dipoles.push_back({{at.x(), at.y(), at.z()}, {moment.x(), moment.y(), moment.z()}});
+  Track track;
+  track.resize(2 * static_cast<Eigen::Index>(S));
+  for (VecX* each : {&track.x_h, &track.v_h})
+    for (double& x : *each)
+      x = numbers.next();
+  cell.immersion->prepare(section, rates, forcing, track);
+  cell.model.immersion = cell.immersion.get();
+  cell.model.around = cell.immersion->at(0);
+}
+
 Cell make_cell(const Case& c, unsigned seed) {
   Numbers numbers(seed);
   Cell cell;
   const ArcTableau& table = arc_tableau(c.integrator);
   cell.kernel = planar_kernel(table.stages, c.law);
-  cell.model = {&table, 0.4, 1.1, {0.05, 0.09}, c.inertia ? 2.5 : 0, c.rotary ? 0.7 : 0};
+  cell.model.table = &table;
+  cell.model.h = 0.4;
+  cell.model.C_b = 1.1;
+  cell.model.C_v[0] = 0.05;
+  cell.model.C_v[1] = 0.09;
+  cell.model.k = c.inertia ? 2.5 : 0;
+  cell.model.k_J = c.rotary ? 0.7 : 0;
   cell.start = node_of(numbers.vec6());
   cell.stages.assign(static_cast<std::size_t>(table.stages), PlanarStage{});
   for (PlanarStage& s : cell.stages) {
@@ -81,6 +127,7 @@ Cell make_cell(const Case& c, unsigned seed) {
     }
     s.b_J = numbers.next();
   }
+  if (immersed(c.law)) immerse(cell, numbers);
   return cell;
 }
 
@@ -145,8 +192,18 @@ std::vector<Case> cases() {
   return all;
 }
 
+/// And those with something around them.
+std::vector<Case> all_cases() {
+  std::vector<Case> all = cases();
+  for (ArcIntegrator integrator : kIntegrators)
+    for (CellLaw law : {CellLaw::kKirchhoffFluid, CellLaw::kExtensibleFluid})
+      for (bool inertia : {false, true})
+        all.push_back({integrator, law, inertia, inertia});
+  return all;
+}
+
 TEST(PlanarCell, ColumnsAreDerivativesOfTheEvaluation) {
-  for (const Case& c : cases())
+  for (const Case& c : all_cases())
     for (int columns : {kPlanarNarrow, kPlanarWide}) {
       SCOPED_TRACE(c.name() + ", " + std::to_string(columns) + " columns");
       Cell cell = make_cell(c, 7);
@@ -238,7 +295,7 @@ TEST(PlanarCell, EvaluatesWhatTheSpatialCellDoes) {
 }
 
 TEST(PlanarCell, EveryCopyGivesTheSameBits) {
-  for (const Case& c : cases())
+  for (const Case& c : all_cases())
     for (unsigned seed = 1; seed <= 20; ++seed) {
       Cell cell = make_cell(c, seed);
       cell.evaluate();

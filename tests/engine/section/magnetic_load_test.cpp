@@ -46,7 +46,8 @@ struct Section {
 
   void evaluate() {
     const RowMat3 rows = R;
-    const MagneticField all = field();
+    OuterField all;
+    all.magnetic = field();
     evaluate_surroundings(3, 2, of(p), load_matrix(rows.data()), &all, around);
   }
 
