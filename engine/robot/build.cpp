@@ -2,6 +2,7 @@
 // From a scene to a robot: weld what fixed joints hold together, sort links into ground, Newton
 // bodies and free ones, place rods, joints, drives and loads on them.
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -151,6 +152,9 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
     plan.section = plan.along->at(0, 0);
   }
   plan.length = rod.length;
+  if (rod.tip_held && rod.base_held && rod.gravity)
+    plan.limpness = robot.gravity.norm() * std::abs(plan.section.weighing_mass()) *
+                    std::pow(rod.length, 3) / plan.section.K_bt.head<2>().minCoeff();
   plan.extension = has(Effect::kExtension);
   plan.shear = has(Effect::kShear);
   plan.rotary_inertia = has(Effect::kRotaryInertia);

@@ -156,6 +156,7 @@ class Equations final : public Problem {
   int number_body_contacts(int offset);
   void evaluate_body_contacts(ProblemResidual& r);
   void assemble_body_contacts();
+  void body_contact_units(VecX& columns) const;
   std::string body_contact_name(std::size_t contact) const;
   void assemble_pairs();
   void hold_still_bodies();

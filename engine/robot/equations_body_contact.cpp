@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Contacts of bodies with each other and with what stands still: three unknowns and rows each,
 // behind those of rods' contacts (engine/robot/body_contact.h).
+#include <algorithm>
+
 #include "engine/math/so3.h"
 #include "engine/robot/equations.h"
 #include "engine/solve/phase_clock.h"
@@ -86,6 +88,14 @@ void Equations::assemble_body_contacts() {
     }
     J_.block<3, 3>(b, at) -= hat(rows.y - robot_.body_pose(probe.other).p);
     J_.block<3, 3>(b + 3, at) -= Mat3::Identity();
+  }
+}
+
+void Equations::body_contact_units(VecX& columns) const {
+  for (std::size_t k = 0; k < robot_.body_contacts.size(); ++k) {
+    const BodyProbe& probe = robot_.probes[robot_.body_contacts[k].probe];
+    columns.segment<3>(first_touch_ + 3 * static_cast<Eigen::Index>(k))
+        .setConstant(std::max(force_unit(probe.body), force_unit(probe.other)));
   }
 }
 

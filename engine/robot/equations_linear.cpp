@@ -251,11 +251,7 @@ VecX Equations::column_units() const {
         u[at + N + freedom.unknown] = length;
   }
   if (!pairs_.empty()) pair_units(u);
-  for (std::size_t k = 0; k < robot_.body_contacts.size(); ++k) {
-    const BodyProbe& probe = robot_.probes[robot_.body_contacts[k].probe];
-    u.segment<3>(first_touch_ + 3 * static_cast<Eigen::Index>(k))
-        .setConstant(std::max(force_unit(probe.body), force_unit(probe.other)));
-  }
+  body_contact_units(u);
   return u;
 }
 

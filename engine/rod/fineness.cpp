@@ -41,6 +41,10 @@ constexpr double kFirstDigits = 1.5, kTurnPerElement = 4;
 // Contact is where elements meet: they must be short against what is touched, not of high degree.
 constexpr int kTouchingElements = 20, kTouchingOrder = 3, kTouchingDegree = 4;
 
+// w L³ / EI from which shooting was seen to find other equilibria, or none (S11 in
+// docs/reference_cases.md)
+constexpr double kLimp = 1000;
+
 Method fitting_method(const RodPlan& plan, std::string& why) {
   const SolverSpec& solver = *plan.solver;
   if (solver.points || solver.integrator) {
@@ -58,6 +62,10 @@ Method fitting_method(const RodPlan& plan, std::string& why) {
   }
   if (plan.plane && !plan.tendons.empty()) {
     why = "auto: in a plane shooting knows no tendons, and the strain basis is the next fastest";
+    return Method::kStrain;
+  }
+  if (plan.limpness > kLimp && !plan.touches) {
+    why = "auto: it hangs like a cable, to which shooting does not find its way";
     return Method::kStrain;
   }
   why = "auto: shooting takes the least time for its accuracy (docs/methods.md)";

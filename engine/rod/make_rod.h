@@ -25,6 +25,7 @@ struct RodPlan {
   SectionProperties section;  ///< of the base, if they vary
   std::shared_ptr<const SectionsAlong> along;  ///< null: the same all along
   double length = 0;
+  double limpness = 0;  ///< w L³ / EI of a rod whose both ends are held; 0 without gravity
   bool extension = false, shear = false;  ///< effects that change the law
   bool rotary_inertia = false, damping = false, drag = false;
   bool line_loads = false;       ///< whether anything is spread along it: loads, magnets

@@ -108,5 +108,29 @@ TEST(Auto, TakesTheMethodWhoseResolutionIsGiven) {
   EXPECT_EQ(robot.rods[0].choice.why, "the rod asks for it; cut for 1e-09 m");
 }
 
+// Between hinges 1 m apart hang 1.2 m of 1 N/m, EA = 500 N: the sag of the elastic catenary.
+TEST(Auto, TakesTheStrainBasisForWhatHangsLikeACable) {
+  RodSpec rod = steel_rod(1.2, 1e-2);
+  rod.stiffness.bending_x = rod.stiffness.bending_y = rod.stiffness.torsion = 0.864e-5;
+  rod.stiffness.axial = 500;
+  rod.material->density = 1 / (std::numbers::pi * 1e-4);
+  const Mat3 along_x = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitY()).toRotationMatrix();
+  rod.base.joint = rod.tip.joint = EndJoint::kRevolute;
+  rod.base.axis = rod.tip.axis = Vec3::UnitY();
+  rod.base.at.X_BF = {along_x, Vec3::Zero()};
+  rod.tip.at.X_BF = {along_x, Vec3::UnitX()};
+  Scene scene;
+  switch_on(scene, {Effect::kGravity, Effect::kExtension});
+  scene.gravity = {0, 0, -1};
+  scene.solver.method = Method::kAuto;
+  scene.rods.push_back(rod);
+  const Equilibrium hanging(scene);
+  ASSERT_TRUE(hanging.report.converged()) << hanging.report.worst_row;
+  EXPECT_NE(hanging.robot.rods[0].choice.why.find("hangs like a cable"), std::string::npos);
+  EXPECT_NEAR(point_at(hanging.rod(), 0.5).position.z(), -0.2929124, 2e-4);
+  scene.rods[0].stiffness.bending_x = scene.rods[0].stiffness.bending_y = 1;
+  EXPECT_EQ(build_robot(scene).rods[0].choice.method, Method::kShooting);
+}
+
 }  // namespace
 }  // namespace cprsim

@@ -181,8 +181,8 @@ TEST(State, OfContactsWithAnyByteChangedIsRefusedOrGoesOn) {
 
   constexpr std::size_t kEvery = 61;  // 1 takes four minutes
 
-  for (const auto& [name, steps] :
-       {Case{"contact/crossing", 15}, Case{"contact/gripper", 160}, Case{"rods/bundle", 3}}) {
+  for (const auto& [name, steps] : {Case{"contact/crossing", 15}, Case{"contact/gripper", 160},
+                                    Case{"contact/stack", 100}, Case{"rods/bundle", 3}}) {
     LoadResult loaded = load(std::string(CPRSIM_SOURCE_DIR) + "/scenes/" + name + ".xml");
     ASSERT_TRUE(loaded.scene) << name;
     const Scene& scene = *loaded.scene;
