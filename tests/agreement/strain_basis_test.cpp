@@ -124,7 +124,7 @@ TEST(Auto, TakesTheStrainBasisForWhatHangsLikeACable) {
   scene.gravity = {0, 0, -1};
   scene.solver.method = Method::kAuto;
   scene.rods.push_back(rod);
-  const Equilibrium hanging(scene);
+  const Equilibrium hanging(scene, 1e-9);
   ASSERT_TRUE(hanging.report.converged()) << hanging.report.worst_row;
   EXPECT_NE(hanging.robot.rods[0].choice.why.find("hangs like a cable"), std::string::npos);
   EXPECT_NEAR(point_at(hanging.rod(), 0.5).position.z(), -0.2929124, 2e-4);
