@@ -72,9 +72,7 @@ class Writer {
     robot_.rods = 1 + dice_.below(12);
     robot_.mode = dice_.of({"static", "quasistatic", "dynamic", "dynamic"});
     robot_.contact = dice_.one_in(3);
-    // the other methods have no contact
-    robot_.method =
-        robot_.contact ? "shooting" : dice_.of({"auto", "shooting", "strain", "collocation"});
+    robot_.method = dice_.of({"auto", "shooting", "strain", "collocation"});
     radius_ = dice_.between(1e-4, 2e-2);
     length_ = radius_ * dice_.between(10, 1e5);
     youngs_modulus_ = dice_.between(1e3, 4e11);
