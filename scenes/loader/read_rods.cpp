@@ -254,7 +254,11 @@ void require_stiffness(Reading& r, const Chain& chain, const RodSpec& rod) {
     need(shears || rod.stiffness.shear_x, "shear_x");
     need(shears || rod.stiffness.shear_y, "shear_y");
   }
-  const bool broken = !rod.material && mentioned(chain, "material");
+  // what is written there and wrong has been complained about
+  const Node* group = part(chain, "material");
+  const bool shear_written =
+      group && (mentioned({group}, "shear_modulus") || mentioned({group}, "poisson_ratio"));
+  const bool broken = (mentioned(chain, "material") && !elastic) || (!shears && shear_written);
   if (lacking.empty() || broken) return;
   Diagnostic& d =
       r.report.missing("E505", node, describe(node) + " has no stiffness in " + lacking);
