@@ -18,7 +18,7 @@ int planar_kernel_copies() {
   return 1;
 }
 
-PlanarKernel planar_kernel_copy(int copy, int stages, CellLaw law) {
+PlanarKernel planar_kernel_copy([[maybe_unused]] int copy, int stages, CellLaw law) {
   const auto of = [&] {
 #ifdef CPRSIM_X86_KERNELS
     if (copy == 2) return planar_kernel_avx512(stages, law);

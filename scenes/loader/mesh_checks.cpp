@@ -57,7 +57,7 @@ bool indices_are_numbers(const std::string& text) {
 bool claims_too_much(const std::string& text) {
   const std::string word = "count=";
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-    const std::size_t begin = at + word.size() + 1;
+    const std::size_t begin = std::min(at + word.size() + 1, text.size());  // past the quote
     std::size_t end = begin;
     while (end < text.size() && text[end] >= '0' && text[end] <= '9')
       ++end;
