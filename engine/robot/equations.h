@@ -108,6 +108,8 @@ class Equations final : public Problem {
 
   long factorizations() const override { return factorizations_; }
 
+  long work() const override;
+
   /// Increment of a body in the last direction found.
   Vec6 body_direction(int body) const;
 

@@ -106,11 +106,15 @@ struct Simulation::Parts {
   bool find_equilibrium() {
     equations.set_instant(t, true, StageRates{});
     equations.mark_start();
-    const SolveOptions options = static_options(scene.solver);
+    SolveOptions options = static_options(scene.solver);
+    options.most_work = equations.work() + kMostStaticWork;
     report = contacts.any() && equations.loads_on() ? load_gradually(contacts, equations, options)
                                                     : solve_statics(equations, options);
     count(report);
-    if (!report.converged()) fail("no static equilibrium found");
+    if (!report.converged())
+      fail("no static equilibrium found" +
+           (report.loaded < 1 ? " beyond " + short_number(100 * report.loaded) + " % of the loads"
+                              : std::string()));
     return report.converged();
   }
 

@@ -207,7 +207,8 @@ void Simulation::Parts::step_quasistatic() {
     const double step = std::min(target, stop - from);
     t = step >= (stop - from) * (1 - 1e-9) ? stop : from + step;
     equations.set_instant(t, true, StageRates{});
-    const SolveOptions options = static_options(scene.solver);
+    SolveOptions options = static_options(scene.solver);
+    options.most_work = equations.work() + kMostStaticWork;
     contacts.begin_step();
     report = newton(equations, options);
     if (!report.converged()) {

@@ -29,6 +29,7 @@ SolveReport settle_contacts(RodContacts& contacts, Problem& problem, const Solve
       return first;
     }
     add(first, newton(problem, options));
+    if (first.status == SolveStatus::kWorkLimit) return first;
     if (!first.converged() && contacts.ease()) {
       SolveOptions bold = options;
       bold.bold = true;
@@ -68,7 +69,7 @@ SolveReport load_gradually(RodContacts& contacts, Equations& equations,
     }
     equations.set_unknowns(from);
     step = 0.25 * (target - carried);
-    if (step >= kSmallestStep) continue;
+    if (step >= kSmallestStep && part.status != SolveStatus::kWorkLimit) continue;
     if (total.converged()) {
       total.status = SolveStatus::kStalled;
       total.worst_row = "a rod that would pass through an obstacle";
@@ -76,6 +77,7 @@ SolveReport load_gradually(RodContacts& contacts, Equations& equations,
     break;
   }
   equations.set_fraction(1);
+  total.loaded = carried;
   total.stage = SolveStage::kContinuation;
   return total;
 }

@@ -124,6 +124,8 @@ const char* to_string(SolveStatus status) {
       return "iteration limit";
     case SolveStatus::kNotFinite:
       return "not finite";
+    case SolveStatus::kWorkLimit:
+      return "work limit";
     case SolveStatus::kSingular:
       break;
   }
@@ -158,6 +160,8 @@ SolveReport newton(Problem& problem, const SolveOptions& options) {
     }
     if (report.iterations >= options.max_iterations || r.merit > options.max_merit)
       return finish(report, problem, before, r, SolveStatus::kIterationLimit);
+    if (problem.work() > options.most_work)
+      return finish(report, problem, before, r, SolveStatus::kWorkLimit);
     if (!problem.find_direction(0))
       return finish(report, problem, before, r, SolveStatus::kSingular);
     ++report.iterations;
@@ -182,6 +186,8 @@ SolveReport levenberg_marquardt(Problem& problem, const SolveOptions& options) {
       return finish(report, problem, before, r, SolveStatus::kConverged);
     if (report.iterations >= options.max_iterations)
       return finish(report, problem, before, r, SolveStatus::kIterationLimit);
+    if (problem.work() > options.most_work)
+      return finish(report, problem, before, r, SolveStatus::kWorkLimit);
     ++report.iterations;
     const bool found = problem.find_direction(mu);
     ProblemResidual trial;
@@ -247,7 +253,7 @@ SolveReport continuation(Problem& problem, const SolveOptions& options) {
       continue;
     }
     step /= 4;
-    if (step < kSmallestFraction) break;
+    if (step < kSmallestFraction || part.status == SolveStatus::kWorkLimit) break;
     problem.set_fraction(done);
     problem.restart();
     if (done > 0) {
@@ -261,6 +267,8 @@ SolveReport continuation(Problem& problem, const SolveOptions& options) {
         add_counts(total, again);
         if (again.converged()) {
           reached += stride;
+        } else if (again.status == SolveStatus::kWorkLimit) {
+          break;
         } else {
           problem.restart();
           reached = 0;
@@ -293,7 +301,7 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
     add_counts(total, part);
     if (!part.converged()) {
       drag *= 8;
-      if (drag > 1e9) break;
+      if (drag > 1e9 || part.status == SolveStatus::kWorkLimit) break;
       continue;
     }
     fraction = target;
@@ -308,6 +316,7 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
     const SolveReport last = newton(problem, options);
     add_counts(total, last);
     if (last.converged()) return total;
+    if (last.status == SolveStatus::kWorkLimit) break;
     drag = 100 * kNoDrag;
   }
   problem.set_relaxation(0);
@@ -321,8 +330,9 @@ namespace {
 
 // Rods that stretch as easily as they bend can be brought together in a few steps; then they
 // harden.
-void soft_start(Problem& problem, SolveReport& total) {
+void soft_start(Problem& problem, const SolveOptions& options, SolveReport& total) {
   SolveOptions rough;
+  rough.most_work = options.most_work;
   rough.tolerance = 1e-2;
   rough.max_iterations = 15;
   for (const double softness : {2e-2, 2e-3}) {
@@ -374,7 +384,7 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
       problem.break_symmetry();
       problem.evaluate();
     }
-    if (rung.soft && gaping) soft_start(problem, total);
+    if (rung.soft && gaping) soft_start(problem, options, total);
     const SolveReport part = rung.solve(problem, options);
     add_counts(total, part);
     total.stage = part.stage;
@@ -382,6 +392,7 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
     problem.set_fraction(1);
     problem.set_relaxation(0);
     problem.restart();
+    if (total.status == SolveStatus::kWorkLimit) break;
   }
   return total;
 }

@@ -2,16 +2,24 @@
 // Nonlinear solvers and the ladder of them that finds a static equilibrium from the scene alone.
 #pragma once
 
+#include <limits>
+
 #include "engine/solve/problem.h"
 #include "engine/solve/report.h"
 
 namespace cprsim {
+
+/// Of one equilibrium: some half a minute of work. What is found at all takes a hundredth of it.
+constexpr long kMostStaticWork = 100'000'000;
 
 struct SolveOptions {
   double tolerance = 1e-9;  ///< converged: largest row <= tolerance
   int max_iterations = 30;  ///< per call of newton() or levenberg_marquardt()
   double max_merit =
       1e30;  ///< newton() gives up at once above this (a trial step that is hopeless)
+  /// Every solver ends with kWorkLimit once the problem's work() is beyond this: ladders of rungs
+  /// and of loads have no other end.
+  long most_work = std::numeric_limits<long>::max();
   /// One full step even from a guess that meets the tolerance already, kept if it still does: in
   /// time steps the error of accepted guesses would add up.
   bool polish = false;
@@ -48,6 +56,7 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options);
 /// Where parts must be brought together, newton and levenberg_marquardt begin from a rough solution
 /// with soft rods, newton a second time with rods bowed; hardening comes before continuation, and
 /// relaxation once from soft rods before it begins from the scene's own start.
+/// No rung is begun once most_work is reached.
 SolveReport solve_statics(Problem& problem, const SolveOptions& options);
 
 }  // namespace cprsim

@@ -51,6 +51,9 @@ class Problem {
   virtual std::string worst_row() const = 0;
   virtual double growth() const = 0;
   virtual long section_evaluations() const = 0;
+  /// What was computed so far, in section evaluations or what costs as much: a measure that is the
+  /// same on every machine.
+  virtual long work() const = 0;
   virtual long factorizations() const = 0;
 };
 

@@ -12,7 +12,8 @@ enum class SolveStatus {
   kStalled,         ///< no step reduces the residual any more
   kIterationLimit,  ///< max_iterations reached with residual > tolerance
   kNotFinite,       ///< a residual or a step is NaN or infinite
-  kSingular         ///< the linearised system has no unique solution
+  kSingular,        ///< the linearised system has no unique solution
+  kWorkLimit        ///< most_work reached with residual > tolerance
 };
 
 /// Which rung of the ladder found (or last tried for) the solution. Continuation is in loads and
@@ -30,6 +31,7 @@ struct SolveReport {
   long evaluations = 0;  ///< section evaluations
   double residual = 0;   ///< largest scaled row, dimensionless
   double initial_residual = 0;
+  double loaded = 1;            ///< part of the loads that was carried, where they grew
   double growth = 0;            ///< largest segment transition norm
   std::string worst_row;        ///< e.g. "tip of robot::leg_3, moment y"
   std::vector<double> history;  ///< residual per iteration

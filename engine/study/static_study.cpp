@@ -165,6 +165,7 @@ SolveReport StaticStudy::solve() {
   SolveOptions options;
   options.tolerance = tolerance_;
   options.max_iterations = kIterations;
+  options.most_work = equations_->work() + kMostStaticWork;
   SolveReport report = solve_statics(*equations_, options);
   has_solved_ = report.converged();
   if (!has_solved_) return report;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solve/newton.h"
 #include "tools/cprsim/names.h"
 
 namespace cprsim {
@@ -92,6 +93,32 @@ void blame_buckling(const Scene& scene, const ProblemFacts& facts, Causes& cause
                   weight, carried));
 }
 
+/// Rods that bend under their own weight far beyond what a standing one carries (Greenhill 1881).
+void blame_weight(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
+  constexpr double kGreenhill = 7.837, kFar = 100;
+  const auto heaviest = std::max_element(
+      facts.rods.begin(), facts.rods.end(),
+      [](const RodFacts& a, const RodFacts& b) { return a.gravity_number < b.gravity_number; });
+  if (heaviest == facts.rods.end() || !scene.effects.has(Effect::kGravity)) return;
+  const double times = heaviest->gravity_number / kGreenhill;
+  if (times < kFar) return;
+  causes.push_back(fmt::format(
+      "rod '{}' weighs {:.3g} times what it could carry standing: it is a cable, and has many "
+      "equilibria",
+      heaviest->name, times));
+}
+
+void blame_work(const SolveReport& solve, Causes& causes) {
+  if (solve.status != SolveStatus::kWorkLimit) return;
+  const std::string reached =
+      solve.loaded < 1 ? fmt::format(", with {:.3g} % of the loads carried", 100 * solve.loaded)
+                       : std::string();
+  causes.push_back(fmt::format(
+      "an equilibrium may take {} million section evaluations, which are used up{}: begin from a "
+      "dynamic run with damping, or with fewer elements",
+      kMostStaticWork / 1000000, reached));
+}
+
 void blame_tolerance(const Scene& scene, const SolveReport& solve, Causes& causes) {
   const double tolerance = scene.solver.residual_tolerance.value_or(0);
   if (solve.status != SolveStatus::kStalled || tolerance <= 0) return;
@@ -118,7 +145,9 @@ Causes likely_causes(const Scene& scene, const ProblemFacts& facts, const SolveR
   blame_resolution(scene, facts, causes);
   blame_tolerance(scene, solve, causes);
   blame_iterations(scene, solve, causes);
+  blame_work(solve, causes);
   blame_buckling(scene, facts, causes);
+  blame_weight(scene, facts, causes);
   if (started) blame_step(facts, causes);
   if (solve.status == SolveStatus::kSingular) {
     causes.push_back(

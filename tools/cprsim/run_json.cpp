@@ -139,7 +139,7 @@ Json failure_json(const RunReport& report) {
   failure["solve"] = {{"status", to_string(solve.status)}, {"stage", to_string(solve.stage)},
                       {"iterations", solve.iterations},    {"residual", solve.residual},
                       {"worst_row", solve.worst_row},      {"growth", solve.growth},
-                      {"residual_history", solve.history}};
+                      {"loads_carried", solve.loaded},     {"residual_history", solve.history}};
   failure["likely_causes"] = report.likely_causes;
   return failure;
 }

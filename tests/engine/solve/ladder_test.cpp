@@ -99,12 +99,36 @@ TEST(Ladder, LeavesAnUnsolvableProblemAtItsStart) {
   EXPECT_GT(r.residual, 1e-9);
 }
 
+TEST(Ladder, EndsWhereItsWorkIsUsedUp) {
+  constexpr long kOneIteration = 24;  // evaluations of a step that is shortened to 1/1024, twice
+  for (const auto solve :
+       {newton, levenberg_marquardt, continuation, hardening, relaxation, solve_statics}) {
+    SmallProblem problem = scalar_problem(
+        0.5, [](double x) { return x * x + 1; }, [](double x) { return 2 * x; });
+    SolveOptions options;
+    options.max_iterations = 1'000'000;
+    for (const long most : {0L, 3L, 30L}) {
+      problem.restart();
+      options.most_work = problem.work() + most;
+      const SolveReport r = solve(problem, options);
+      if (solve == newton && r.status == SolveStatus::kStalled) continue;  // sooner
+      EXPECT_EQ(r.status, SolveStatus::kWorkLimit) << most;
+      EXPECT_LE(problem.work(), options.most_work + kOneIteration) << most;
+    }
+  }
+  SmallProblem valley = rosenbrock();
+  SolveOptions enough;
+  enough.most_work = 1000;
+  EXPECT_TRUE(solve_statics(valley, enough).converged());
+}
+
 TEST(Ladder, EveryStatusAndStageHasAName) {
   EXPECT_STREQ(to_string(SolveStatus::kConverged), "converged");
   EXPECT_STREQ(to_string(SolveStatus::kStalled), "stalled");
   EXPECT_STREQ(to_string(SolveStatus::kIterationLimit), "iteration limit");
   EXPECT_STREQ(to_string(SolveStatus::kNotFinite), "not finite");
   EXPECT_STREQ(to_string(SolveStatus::kSingular), "singular");
+  EXPECT_STREQ(to_string(SolveStatus::kWorkLimit), "work limit");
   EXPECT_STREQ(to_string(SolveStage::kNewton), "Newton");
   EXPECT_STREQ(to_string(SolveStage::kRelaxation), "relaxation");
 }

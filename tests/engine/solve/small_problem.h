@@ -98,6 +98,8 @@ class SmallProblem final : public Problem {
 
   long section_evaluations() const override { return evaluations_; }
 
+  long work() const override { return evaluations_; }
+
   long factorizations() const override { return factorizations_; }
 
  private:
