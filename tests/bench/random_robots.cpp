@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Simulates robots that nobody designed (random_robot.h), each in a process of its own with a
-// budget, and counts how they end. Writes FOLDER/random_robots.md. Ends with 1 if one of them
+// budget, and counts how they end. FOLDER/random_robots.csv has a line for each and is gone on with
+// if it is there already; FOLDER/random_robots.md is made of it. Ends with 1 if one of them
 // crashed, ran out of its budget, failed without a reason, or was called converged and is not.
-//   cprsim_random_robots [--robots N] [--seed S] [--budget SECONDS] FOLDER
+//   cprsim_random_robots [--robots N] [--seed S] [--budget SECONDS] [--jobs N] FOLDER
 //   cprsim_random_robots --show SEED        prints the scene
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +38,7 @@ struct Options {
   std::string folder;
   std::uint64_t robots = 10000, seed = 1;
   unsigned budget = 60;  ///< s of CPU
+  std::size_t jobs = 1;  ///< robots at a time
 };
 
 /// How a robot ended, as the child writes it: a letter and a reason.
@@ -122,32 +125,43 @@ Result try_robot(const RandomRobot& robot) {
   return at_rest ? solve_static(*loaded.scene) : simulate(*loaded.scene, robot);
 }
 
-/// In a child with limits, so that nothing that happens there ends the count.
-Result in_child(const RandomRobot& robot, unsigned budget) {
+/// A robot at work in a process of its own, with limits, so that nothing that happens there ends
+/// the count.
+struct Child {
+  std::uint64_t seed = 0;
+  int answer = -1;  ///< end of a pipe
+};
+
+[[noreturn]] void be_child(const RandomRobot& robot, unsigned budget, int answer) {
+  const rlimit time{budget, budget + 1};
+  ::setrlimit(RLIMIT_CPU, &time);
+  Result result;
+  try {
+    result = try_robot(robot);
+  } catch (const std::exception& error) {
+    result = {End::kCrashed, std::string("exception: ") + without_numbers(error.what())};
+  }
+  const std::string line = static_cast<char>(result.end) + result.reason;
+  const ssize_t written = ::write(answer, line.data(), line.size());
+  ::_exit(written == static_cast<ssize_t>(line.size()) ? 0 : 1);
+}
+
+pid_t start(std::uint64_t seed, unsigned budget, Child& child) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
-  const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("no process");
-  if (child == 0) {
-    ::close(ends[0]);
-    const rlimit time{budget, budget + 1};
-    ::setrlimit(RLIMIT_CPU, &time);
-    Result result;
-    try {
-      result = try_robot(robot);
-    } catch (const std::exception& error) {
-      result = {End::kCrashed, std::string("exception: ") + without_numbers(error.what())};
-    }
-    const std::string line = static_cast<char>(result.end) + result.reason;
-    const ssize_t written = ::write(ends[1], line.data(), line.size());
-    ::_exit(written == static_cast<ssize_t>(line.size()) ? 0 : 1);
-  }
+  const pid_t id = ::fork();
+  if (id < 0) throw std::runtime_error("no process");
+  if (id == 0) be_child(random_robot(seed), budget, ends[1]);
   ::close(ends[1]);
+  child = {seed, ends[0]};
+  return id;
+}
+
+/// What a child that has ended said.
+Result hear(const Child& child, int status) {
   std::string line(4096, '\0');
-  const ssize_t read = ::read(ends[0], line.data(), line.size());
-  ::close(ends[0]);
-  int status = 0;
-  ::waitpid(child, &status, 0);
+  const ssize_t read = ::read(child.answer, line.data(), line.size());
+  ::close(child.answer);
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGXCPU || signal == SIGKILL) return {End::kBudget, "out of its budget"};
@@ -222,13 +236,68 @@ void write_page(const Options& options, const Tally& tally) {
   }
 }
 
-int run(const Options& options) {
-  Tally tally;
-  for (std::uint64_t k = 0; k < options.robots; ++k) {
-    const std::uint64_t seed = options.seed + k;
-    const RandomRobot robot = random_robot(seed);
-    tally.add(robot, seed, in_child(robot, options.budget));
+/// seed, letter, seconds, reason
+struct Line {
+  Result result;
+  double seconds = 0;
+};
+
+std::map<std::uint64_t, Line> read_lines(const std::string& file) {
+  std::map<std::uint64_t, Line> lines;
+  std::ifstream stream(file);
+  std::string text;
+  while (std::getline(stream, text)) {
+    std::istringstream words(text);
+    std::uint64_t seed = 0;
+    char end = 0, comma = 0;
+    Line line;
+    if (!(words >> seed >> comma >> end >> comma >> line.seconds >> comma)) continue;
+    line.result.end = static_cast<End>(end);
+    std::getline(words, line.result.reason);
+    lines[seed] = line;
   }
+  return lines;
+}
+
+/// Tries what has not been tried, several at a time, and writes down each as it ends.
+void try_the_rest(const Options& options, const std::string& file,
+                  std::map<std::uint64_t, Line>& lines) {
+  std::ofstream log(file, std::ios::app);
+  std::map<pid_t, Child> children;
+  std::uint64_t next = options.seed;
+  const std::uint64_t end = options.seed + options.robots;
+  while (true) {
+    while (next < end && children.size() < options.jobs) {
+      const std::uint64_t seed = next++;
+      if (lines.count(seed)) continue;
+      Child child;
+      const pid_t id = start(seed, options.budget, child);
+      children[id] = child;
+    }
+    if (children.empty()) return;
+    int status = 0;
+    rusage used{};
+    const pid_t ended = ::wait4(-1, &status, 0, &used);
+    const auto at = children.find(ended);
+    if (at == children.end()) continue;
+    Line line;
+    line.result = hear(at->second, status);
+    line.seconds = static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                   1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+    log << at->second.seed << "," << static_cast<char>(line.result.end) << "," << line.seconds
+        << "," << line.result.reason << std::endl;
+    lines[at->second.seed] = line;
+    children.erase(at);
+  }
+}
+
+int run(const Options& options) {
+  const std::string file = options.folder + "/random_robots.csv";
+  std::map<std::uint64_t, Line> lines = read_lines(file);
+  try_the_rest(options, file, lines);
+  Tally tally;
+  for (std::uint64_t seed = options.seed; seed < options.seed + options.robots; ++seed)
+    tally.add(random_robot(seed), seed, lines[seed].result);
   write_page(options, tally);
   for (const auto& [end, name] : kEnds)
     std::printf("%-14s %llu\n", name, static_cast<unsigned long long>(tally.all[end]));
@@ -257,11 +326,15 @@ int main(int argc, char** argv) {
       options.seed = value();
     else if (word == "--budget")
       options.budget = static_cast<unsigned>(value());
+    else if (word == "--jobs")
+      options.jobs = std::max<std::size_t>(1, value());
     else
       options.folder = word;
   }
   if (options.folder.empty()) {
-    std::fputs("cprsim_random_robots [--robots N] [--seed S] [--budget SECONDS] FOLDER\n", stderr);
+    std::fputs(
+        "cprsim_random_robots [--robots N] [--seed S] [--budget SECONDS] [--jobs N] FOLDER\n",
+        stderr);
     return 2;
   }
   return cprsim::run(options);
