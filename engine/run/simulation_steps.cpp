@@ -20,6 +20,10 @@ constexpr double kShortest = 1. / 128;
 // instead.
 constexpr double kMostGain = 1e-3;
 
+// Instants are sums of steps: after a million of them the end is off by some 1e-5 of a step. What
+// is left is taken with the last step, not by one that is a hundred thousand times shorter.
+constexpr double kSliver = 1e-4;
+
 // What is rescued may be halved so much more often: nothing is thrown in short steps.
 constexpr int kRescueRetries = 8;
 
@@ -112,7 +116,7 @@ void Simulation::Parts::step_dynamic() {
   for (int failures = 0;; ++failures) {
     const double left = stop - t;
     // land on the break; in adaptive mode without leaving a sliver
-    double step = target >= left * (1 - 1e-9) ? left : target;
+    double step = target >= left * (1 - (plan.adaptive ? 1e-9 : kSliver)) ? left : target;
     if (plan.adaptive && !retraces && step < left && left < 2 * step) step = 0.5 * left;
     const Marcher::Outcome outcome = marcher.attempt(t, step, ledger);
     if (contacts_object(outcome, step, target)) {
@@ -205,7 +209,7 @@ void Simulation::Parts::step_quasistatic() {
   ledger.begin_step(t);
   for (int failures = 0;; ++failures) {
     const double step = std::min(target, stop - from);
-    t = step >= (stop - from) * (1 - 1e-9) ? stop : from + step;
+    t = step >= (stop - from) * (1 - kSliver) ? stop : from + step;
     equations.set_instant(t, true, StageRates{});
     SolveOptions options = static_options(scene.solver);
     options.most_work = equations.work() + kMostStaticWork;
