@@ -100,7 +100,8 @@ void blame_weight(const Scene& scene, const ProblemFacts& facts, Causes& causes)
       facts.rods.begin(), facts.rods.end(),
       [](const RodFacts& a, const RodFacts& b) { return a.gravity_number < b.gravity_number; });
   if (heaviest == facts.rods.end() || !scene.effects.has(Effect::kGravity)) return;
-  const double times = heaviest->gravity_number / kGreenhill;
+  constexpr double kEarth = 9.81;  // m/s2, of the number
+  const double times = heaviest->gravity_number * scene.gravity.norm() / kEarth / kGreenhill;
   if (times < kFar) return;
   causes.push_back(fmt::format(
       "rod '{}' weighs {:.3g} times what it could carry standing: it is a cable, and has many "

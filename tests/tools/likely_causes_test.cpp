@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/cprsim/likely_causes.h"
+
+#include <gtest/gtest.h>
+
+namespace cprsim {
+namespace {
+
+std::string all_of(const std::vector<std::string>& causes) {
+  std::string all;
+  for (const std::string& cause : causes)
+    all += cause + "\n";
+  return all;
+}
+
+struct HeavyThread : testing::Test {
+  HeavyThread() {
+    scene.simulation.mode = Mode::kStatic;
+    scene.effects.set(Effect::kGravity, true);
+    RodFacts rod;
+    rod.name = "thread";
+    rod.gravity_number = 7837;  // 1,000 times what stands
+    facts.rods.push_back(rod);
+  }
+
+  std::string causes() const { return all_of(likely_causes(scene, facts, solve, 0, false)); }
+
+  Scene scene;
+  ProblemFacts facts;
+  SolveReport solve;
+};
+
+TEST_F(HeavyThread, IsNamedWithItsWeight) {
+  EXPECT_NE(causes().find("rod 'thread' weighs 1e+03 times what it could carry"), std::string::npos)
+      << causes();
+  scene.gravity *= 0.01;
+  EXPECT_EQ(causes(), "");
+  scene.gravity *= 1000;
+  EXPECT_NE(causes().find("1e+04 times"), std::string::npos) << causes();
+}
+
+TEST_F(HeavyThread, WhoseSearchIsGivenUpSaysHowFarItCame) {
+  solve.status = SolveStatus::kWorkLimit;
+  EXPECT_EQ(causes().find("% of the loads"), std::string::npos) << causes();
+  EXPECT_EQ(causes().find("an equilibrium may take 100 million section evaluations"), 0U);
+  solve.loaded = 0.25;
+  EXPECT_NE(causes().find("with 25 % of the loads carried"), std::string::npos) << causes();
+}
+
+}  // namespace
+}  // namespace cprsim
