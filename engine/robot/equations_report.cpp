@@ -42,13 +42,19 @@ long Equations::section_evaluations() const {
   return sum;
 }
 
-// To linearise and eliminate a rod costs for each unknown about what an evaluation of a section
-// does; the strain basis has a full matrix, a thousand of whose products cost that.
+// To linearise and eliminate a rod costs for each unknown of shooting about what an evaluation of a
+// section does; collocation has a band, the strain basis a full matrix, of whose products that many
+// cost the same.
 long Equations::work() const {
+  constexpr long kBandProducts = 200, kFullProducts = 1000;
+  constexpr long kFields = 13;  // pose, force and moment of a point
   long direction = 0;
   for (const RobotRod& rod : robot_.rods) {
-    const long n = rod.model->unknown_count();
-    direction += rod.model->resolution().method == Method::kStrain ? n + n * n * n / 1000 : n;
+    const RodResolution how = rod.model->resolution();
+    const long n = rod.model->unknown_count(), band = kFields * (how.order + 1);
+    direction += n;
+    if (how.method == Method::kStrain) direction += n * n * n / kFullProducts;
+    if (how.method == Method::kCollocation) direction += n * band * band / kBandProducts;
   }
   return section_evaluations() + factorizations_ * direction;
 }

@@ -9,7 +9,7 @@
 
 namespace cprsim {
 
-/// Of one equilibrium: some half a minute of work. What is found at all takes a hundredth of it.
+/// Of one equilibrium: some ten to twenty seconds of work (docs/random_robots.md).
 constexpr long kMostStaticWork = 100'000'000;
 
 struct SolveOptions {
