@@ -57,7 +57,12 @@ bool Equations::condense(bool keep_all) {
     growth_ = std::max(growth_, c.growth);
     Elimination& e = eliminations_[i];
     const Eigen::PartialPivLU<MatN> lu(MatN(c.T.topLeftCorner<N, N>()));
-    const VecN pivots = lu.matrixLU().diagonal().cwiseAbs();
+    VecN pivots = lu.matrixLU().diagonal().cwiseAbs();
+    // A straight rod in flight has neither inertia nor stiffness about its axis. Pivots of columns
+    // alone need not show that.
+    if (!rod.base_held)
+      pivots =
+          Eigen::FullPivLU<MatN>(MatN(c.T.topLeftCorner<N, N>())).matrixLU().diagonal().cwiseAbs();
     e.delayed = keep_all || !(pivots.minCoeff() > kSingularPivot * pivots.maxCoeff());
     if (e.delayed) {
       e.offset = offset;

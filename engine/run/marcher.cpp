@@ -18,6 +18,9 @@ constexpr double kLargestWeights =
 // of lengths and of a radian: less is round-off
 constexpr double kRoundTolerance = 1e-11;
 
+// Between stick and slip Newton's method goes from kink to kink.
+constexpr int kTouchingPatience = 3;
+
 /// Lagrange weights of the given times at t.
 std::vector<double> lagrange(const std::vector<double>& times, double t) {
   std::vector<double> w(times.size(), 1);
@@ -92,7 +95,9 @@ void Marcher::predict(double time) {
 SolveReport Marcher::solve_once(double time) {
   predict(time);
   contacts_.refresh();
-  SolveReport report = newton(equations_, options_);
+  SolveOptions patient = options_;
+  if (contacts_.touching()) patient.max_iterations *= kTouchingPatience;
+  SolveReport report = newton(equations_, patient);
   const auto again = [&](SolveReport (*solve)(Problem&, const SolveOptions&),
                          const SolveOptions& options) {
     const int spent = report.iterations;
@@ -105,10 +110,10 @@ SolveReport Marcher::solve_once(double time) {
   };
   if (report.converged()) return report;
   set_out();
-  again(newton, options_);
+  again(newton, patient);
   if (!report.converged() && contacts_.touching()) {
     set_out();
-    if (contacts_.ease()) again(newton, options_);
+    if (contacts_.ease()) again(newton, patient);
     if (report.converged()) return report;
     SolveOptions bold = options_;
     bold.bold = true;
@@ -117,7 +122,7 @@ SolveReport Marcher::solve_once(double time) {
     again(newton, bold);
     if (report.converged()) return report;
     set_out();
-    if (contacts_.hold()) again(newton, options_);
+    if (contacts_.hold()) again(newton, patient);
   }
   if (report.converged()) return report;
   set_out();
