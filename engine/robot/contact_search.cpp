@@ -231,7 +231,9 @@ bool RodContacts::follow(Rod& rod, RodContact& contact, const ContactRows& rows,
 
 // New points: the lowest between two nodes, or a node that is not above what its cells' lowest are.
 // On a flat face all nodes that sank: they will lie on it in a line.
-void RodContacts::search(std::size_t index, std::vector<Change>& changes) const {
+// Late in a solve a point near one that touches the same rod is left to the next solve, which may
+// move that: where rods are nearly parallel both would pull by turns.
+void RodContacts::search(std::size_t index, std::vector<Change>& changes, bool late) const {
   const Rod& rod = rods_[index];
   const std::vector<RodContact>& contacts = rod.side->contacts();
   const double noticed = rod.radius * (1 - kNotice), fine = kNotice * rod.radius;
@@ -256,7 +258,16 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
              (contact.cell == cell || (contact.at_node() && contact.cell == cell + 1));
     });
   };
+  const auto settled = [&](std::size_t o, double at) {
+    return late && rod.obstacles[o].rod >= 0 &&
+           std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
+             const double other = static_cast<double>(contact.cell) + contact.xi;
+             return contact.role != ContactRole::kEcho && contact.surface == static_cast<int>(o) &&
+                    std::abs(at - other) < 1;
+           });
+  };
   const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {
+    if (settled(o, static_cast<double>(cell) + xi)) return;
     const RodContact contact = new_contact(rod, o, cell, xi);
     // what had sunk before may lie deep
     const double depth = rod.radius + contact.sunk - d;

@@ -191,7 +191,7 @@ bool RodContacts::revise(int round) {
           follow(rod, contacts[i], rod.side->contact_state()[i], round < kHeld))
         again = true;
     review(r, changes);
-    search(r, changes);
+    search(r, changes, round >= kPatience);
   }
   if (changes.empty() && !again) {
     update_echoes();

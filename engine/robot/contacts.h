@@ -213,7 +213,7 @@ class RodContacts {
   void leap(Rod& rod, const RodContact& contact, double by, std::size_t& cell, double& xi) const;
   bool pulls_most(const Rod& rod, std::size_t contact) const;
   void review(std::size_t rod, std::vector<Change>& changes) const;
-  void search(std::size_t rod, std::vector<Change>& changes) const;
+  void search(std::size_t rod, std::vector<Change>& changes, bool late) const;
   RodContact new_contact(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;
   void apply(const std::vector<Change>& changes);
 

@@ -13,15 +13,14 @@
 namespace cprsim {
 namespace {
 
-// Below this ratio of pivots T is treated as singular: it then holds no stiffness in some
-// direction.
+// Below this ratio of pivots T is singular: without stiffness in some direction.
 constexpr double kSingularPivot = 1e-10;
 
 // Likewise for the global system, and how well its rows must then be met.
 constexpr double kSingularSystem = 1e-13, kConsistent = 1e-6;
 
-// Joints that close a loop may say the same twice (a planar four-bar thrice), up to round-off that
-// elimination has magnified. Taken for a pivot it would throw the multipliers about.
+// Joints that close a loop may say the same twice (a planar four-bar thrice), up to magnified
+// round-off. Taken for a pivot it would throw the multipliers about.
 constexpr double kSingularLoop = 1e-12;
 
 }  // namespace
@@ -56,13 +55,11 @@ bool Equations::condense(bool keep_all) {
     if (!rod.model->linearize(robot_.port(rod.base), robot_.port(rod.tip), c)) return false;
     growth_ = std::max(growth_, c.growth);
     Elimination& e = eliminations_[i];
-    const Eigen::PartialPivLU<MatN> lu(MatN(c.T.topLeftCorner<N, N>()));
+    const MatN T = c.T.topLeftCorner<N, N>();
+    const Eigen::PartialPivLU<MatN> lu(T);
     VecN pivots = lu.matrixLU().diagonal().cwiseAbs();
-    // A straight rod in flight has neither inertia nor stiffness about its axis. Pivots of columns
-    // alone need not show that.
-    if (!rod.base_held)
-      pivots =
-          Eigen::FullPivLU<MatN>(MatN(c.T.topLeftCorner<N, N>())).matrixLU().diagonal().cwiseAbs();
+    // a straight rod in flight spins without inertia, which pivots of columns need not show
+    if (!rod.base_held) pivots = Eigen::FullPivLU<MatN>(T).matrixLU().diagonal().cwiseAbs();
     e.delayed = keep_all || !(pivots.minCoeff() > kSingularPivot * pivots.maxCoeff());
     if (e.delayed) {
       e.offset = offset;

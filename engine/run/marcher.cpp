@@ -90,13 +90,18 @@ void Marcher::predict(double time) {
   if (!past_.empty()) equations_.set_unknowns(past_.back().unknowns);
 }
 
+SolveOptions Marcher::patient() const {
+  SolveOptions options = options_;
+  if (contacts_.any() && contacts_.touching()) options.max_iterations *= kTouchingPatience;
+  return options;
+}
+
 // Newton from the prediction; failing that, from where the step began, where rods touch also with
 // full steps, and with what slips held; failing that, Levenberg-Marquardt.
 SolveReport Marcher::solve_once(double time) {
   predict(time);
-  contacts_.refresh();
-  SolveOptions patient = options_;
-  if (contacts_.touching()) patient.max_iterations *= kTouchingPatience;
+  if (contacts_.any()) contacts_.refresh();
+  const SolveOptions patient = this->patient();
   SolveReport report = newton(equations_, patient);
   const auto again = [&](SolveReport (*solve)(Problem&, const SolveOptions&),
                          const SolveOptions& options) {
@@ -106,7 +111,7 @@ SolveReport Marcher::solve_once(double time) {
   };
   const auto set_out = [&] {
     equations_.set_unknowns(start_);
-    contacts_.refresh();
+    if (contacts_.any()) contacts_.refresh();
   };
   if (report.converged()) return report;
   set_out();
@@ -132,7 +137,7 @@ SolveReport Marcher::solve_once(double time) {
 
 SolveReport Marcher::solve_stage(double time) {
   const SolveReport first = solve_once(time);
-  return contacts_.any() ? settle_contacts(contacts_, equations_, options_, first) : first;
+  return contacts_.any() ? settle_contacts(contacts_, equations_, patient(), first) : first;
 }
 
 void Marcher::fill_tracks() {
