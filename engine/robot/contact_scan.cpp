@@ -93,20 +93,20 @@ void RodContacts::scan(Rod& rod) const {
   for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
     const Obstacle& obstacle = rod.obstacles[o];
     for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
-      // a distance changes no faster than one walks, that of a rod from itself twice as fast: what
-      // is far along it begins later as one walks on, until nothing is left
       if (obstacle.rod >= 0 && !obstacle.itself) {
         const std::size_t other = static_cast<std::size_t>(obstacle.rod);
         const Eigen::AlignedBox3d cell = box_of(nodes, c, c + 1, 0.1 * length(rod, c));
         const double apart =
             std::sqrt(boxes[other].squaredExteriorDistance(cell)) - rods_[other].radius;
-        if (apart > length(rod, c)) {
+        if (apart > std::max(2 * rod.radius, 0.25 * length(rod, c))) {
           out.clearance = std::min(out.clearance, apart - rod.radius);
           out.near[c * rod.obstacles.size() + o] = {apart, Vec3::Zero(),
                                                     rods_[other].side->contact_nodes().size() - 1};
           continue;
         }
       }
+      // a distance changes no faster than one walks, that of a rod from itself twice as fast: what
+      // is far along it begins later as one walks on, until nothing is left
       const double walk = (obstacle.itself ? 2.2 : 1.1) * length(rod, c);
       const double here = distance(rod, o, c, 0).d, there = distance(rod, o, c + 1, 0).d;
       double d = std::isfinite(there) ? 0.5 * (here + there - walk) : here - walk;

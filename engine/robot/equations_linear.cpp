@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The linear side: condensed rods, global system, directions. Rows are J x + r = 0 with x in the
-// units of column_units() and rows in those of row_units(), so that pivoting compares like with
-// like.
+// The linear side: condensed rods, global system, directions. In J x + r = 0 x is in the units of
+// column_units(), rows in those of row_units(), so that pivoting compares like with like.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
