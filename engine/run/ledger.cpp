@@ -95,6 +95,9 @@ bool EnergyLedger::speeds_jumped() const {
 
 double EnergyLedger::drive_power(double t, bool before) const {
   double power = 0;
+  for (const std::vector<TendonSample>& tendons : tendons_now(t, before))
+    for (const TendonSample& tendon : tendons)
+      power += tendon.tension * tendon.rate;
   for (const RobotRod& rod : robot_.rods) {
     if (rod.length_drive)
       power += rod.model->energy().feed_power * rod.length_drive->evaluate(t, before).rate;
@@ -166,8 +169,12 @@ void EnergyLedger::sum_up() {
 
 double EnergyLedger::damping_power() const {
   double power = 0;
-  for (const RobotRod& rod : robot_.rods)
+  for (const RobotRod& rod : robot_.rods) {
     power += rod.model->energy().damping_power;
+    if (rod.tendons.empty()) continue;
+    for (const TendonSample& tendon : rod.model->tendons())
+      power += tendon.tension * tendon.lost_rate;
+  }
   for (const Joint& joint : robot_.joints)
     power += joint.loss();
   for (std::size_t k = 0;
@@ -262,13 +269,20 @@ std::vector<std::vector<TendonSample>> EnergyLedger::tendons_now(double t, bool 
   return now;
 }
 
-double EnergyLedger::tendon_work(double t) const {
+EnergyLedger::TendonWork EnergyLedger::tendon_work(double t) const {
   const std::vector<std::vector<TendonSample>> now = tendons_now(t, true);
-  double work = 0;
+  TendonWork work;
   for (std::size_t i = 0; i < now.size(); ++i)
     for (std::size_t k = 0; k < now[i].size(); ++k) {
       const TendonSample &a = tendons_before_[i][k], &b = now[i][k];
-      work += 0.5 * (a.tension + b.tension) * (b.displacement - a.displacement);
+      const double motor = 0.5 * (a.tension + b.tension) * (b.displacement - a.displacement);
+      work.motors += motor;
+      if (b.along.empty()) continue;
+      // what of it reaches the rod, section by section
+      work.friction += motor;
+      for (std::size_t j = 0; j < b.along.size(); ++j)
+        work.friction -= 0.5 * (a.tension * a.along[j].x() + b.tension * b.along[j].x()) *
+                         (b.along[j].y() - a.along[j].y());
     }
   return work;
 }
@@ -307,8 +321,10 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work, 
     if (!a.moment.isZero() || !b.moment.isZero())
       sample_.work += 0.5 * (a.moment + b.moment).dot(log_so3(b.rotation * a.rotation.transpose()));
   }
-  sample_.work += drive_work + tendon_work(t) + course_work(t);
-  sample_.dissipated += damping_loss;
+  const TendonWork tendons =
+      robot_.scene->simulation.mode == Mode::kDynamic ? TendonWork{} : tendon_work(t);
+  sample_.work += drive_work + tendons.motors + course_work(t);
+  sample_.dissipated += damping_loss + tendons.friction;
   // what friction takes, less what its elastic range still holds
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const Joint& joint = robot_.joints[j];
