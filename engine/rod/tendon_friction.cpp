@@ -14,7 +14,7 @@ constexpr std::size_t kSlopePoints = 7, kEdgePoints = 4;
 constexpr Eigen::Index kSectionsPerUnknown = 3;
 // y_stick of (2) over the rod's length: small against what motors pull in, and still soft enough
 // for Newton's method, to which a tendon that sticks is a spring.
-constexpr double kStickRange = 1e-5;
+constexpr double kStickRange = 1e-4;
 // Turning per length of the rod below which it has no direction.
 constexpr double kStraight = 1e-10;
 
@@ -200,7 +200,7 @@ VecX TendonFriction::gaps(const std::vector<TendonSection>& sections, const std:
     const double trial =
         engaged_ ? phi_before_[i] + (passed_[i] - passed_before_[i]) / stick_ : 1.0;
     phi_[i] = std::clamp(trial, -1.0, 1.0);
-    slips_[j] = !engaged_ || std::abs(trial) >= 1;
+    slips_[j] = !engaged_ || std::abs(trial) > 1;  // to begin with it sticks
   }
   VecX gap = -c_;
   for (const Span& span : spans_) {
