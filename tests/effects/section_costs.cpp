@@ -175,10 +175,11 @@ void sweep_rod(const RodCase& at, Method method, bool timed) {
     const CondensedRod& found = rod.condensed;
     std::printf("%ld;%d", rod.sections, rod.rod.model().unknown_count());
     const Eigen::Index d = std::string(at.name).starts_with("planar") ? 3 : 6;
-    for (const double x : MatX(found.T.topLeftCorner(d, d)).reshaped())
-      std::printf(" %a", x);
-    for (const double x : VecX(found.t.head(d)))
-      std::printf(" %a", x);
+    for (Eigen::Index i = 0; i < d; ++i) {
+      for (Eigen::Index k = 0; k < d; ++k)
+        std::printf(" %a", found.T(i, k));
+      std::printf(" %a", found.t[i]);
+    }
     std::printf("\n");
     return;
   }
