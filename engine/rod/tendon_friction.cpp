@@ -102,7 +102,9 @@ void TendonFriction::add_span(double from, double to, const std::vector<AskedSec
   if (span.count == 0) return;
   const auto n = static_cast<Eigen::Index>(span.count);
   if (!spans_.empty()) span.unknown = spans_.back().unknown + spans_.back().degrees;
-  span.degrees = std::max<Eigen::Index>(1, n / kSectionsPerUnknown);
+  // a polynomial that is fitted to even points is stable up to about the root of their number
+  const auto stable = static_cast<Eigen::Index>(2 * std::sqrt(static_cast<double>(n)));
+  span.degrees = std::max<Eigen::Index>(1, std::min(n / kSectionsPerUnknown, stable));
   MatX P(span.degrees, n);
   VecX weights(n), column, integral;
   std::vector<double> s;

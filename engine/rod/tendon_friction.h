@@ -17,10 +17,10 @@
 //
 // (1) makes the law of a section depend on all sections before it. In between stand coefficients c,
 // unknowns of the rod: the turning of each span between stations as Legendre polynomials, fitted to
-// phi kappa at its sections, a third as many as sections; and one angle for each station,
+// phi kappa at its n sections, n / 3 of them and at most 2 sqrt(n); and one angle for each station,
 //   tau(s) = tau_0 exp(-mu Theta(s)),    Theta = sum c_a B_a(s),    c = C(strains)             (3)
 // Derivatives are exact for (3), which is (1) in the limit of fine rods: with the order of the
-// polynomials where kappa is smooth, with the second where it passes through 0.
+// polynomials where kappa is smooth, with the first power of n where it passes through 0.
 #pragma once
 
 #include <vector>

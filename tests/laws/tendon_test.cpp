@@ -321,6 +321,20 @@ TEST_P(Tendons, KeepTheOrderOfTheScheme) {
   EXPECT_NEAR(std::log2(error(coarse) / error(fine)), 2, 0.3);
 }
 
+// The books close with an order of their own where the scheme has one: motors that pull by a smooth
+// function of time, long steps.
+TEST_P(Tendons, CountTheWorkOfMotorsAsExactlyAsTheMotion) {
+  const auto run = [](double step) {
+    Scene scene = released(GetParam(), ShapeOfTime::kSmoothstep, step);
+    scene.solver.scheme = SchemeKind::kEsdirk43;
+    return imbalance(end_of(scene).energy);
+  };
+  const double coarse = run(2e-3), fine = run(1e-3);
+  EXPECT_LT(fine, 1e-6);
+  EXPECT_GT(std::log2(coarse / fine), 2.5);
+  std::printf("imbalance %.1e, %.1e\n", coarse, fine);
+}
+
 // The same for tensions that are unknown: the motors' work is the integral of what they turn out
 // to be.
 TEST_P(Tendons, KeepTheOrderOfTheSchemeWhenPulledInByALength) {
