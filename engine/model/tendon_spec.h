@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tendon as the scene describes it: a thin cable without mass that runs along a rod in channels or
-// through eyelets fixed to its sections, held by a motor at the base and fastened to the section
+// A tendon as the scene describes it: a thin cable without mass that runs along a rod in channels
+// or through eyelets fixed to its sections, held by a motor at the base and fastened to the section
 // where it ends.
 #pragma once
 
