@@ -85,6 +85,7 @@ std::vector<ChannelScalar> scalars_of(const Scene& scene, const NamedEntity& ent
       break;
     case ChannelEntity::kTendon:
       list.add("tension", Quantity::kTension);
+      list.add("end_tension", Quantity::kEndTension);
       list.add("displacement", Quantity::kDisplacement);
       break;
     default:

@@ -38,6 +38,7 @@ enum class Quantity {
   kShearStretch,  ///< v, section axes
   kLength,
   kTension,       ///< of a tendon at its motor
+  kEndTension,    ///< of a tendon where it is fastened: less, with friction
   kDisplacement,  ///< of a tendon: what its motor has pulled in
   kJointPosition,
   kJointVelocity,

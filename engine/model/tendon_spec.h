@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tendon as the scene describes it: a thin cable without mass and friction that runs along a rod
-// in channels or through eyelets fixed to its sections, held by a motor at the base and fastened to
-// the section where it ends.
+// A tendon as the scene describes it: a thin cable without mass that runs along a rod in channels
+// or through eyelets fixed to its sections, held by a motor at the base and fastened to the section
+// where it ends.
 #pragma once
 
 #include <string>
@@ -24,6 +24,7 @@ struct TendonSpec {
   double turns = 0;   ///< helical: about the tangent from base to tip, positive right-handed
   std::vector<Vec3> points;  ///< kPoints: (s / length, x, y), s ascending; straight in between
   double termination = 1;    ///< s / length of the section to which it is fastened
+  double friction = 0;       ///< coefficient against its channel; acts if the effect is listed
 };
 
 /// Where a tendon runs and in which direction, section axes.

@@ -92,6 +92,8 @@ void BodyContacts::review(std::vector<Change>& changes) const {
     if (pressure < -kPull * unit) {
       change.urgency = -pressure / unit;
       change.drop = true;
+    } else if (lagged_ && law.grip == Grip::kSlip) {
+      continue;  // its rows are those of stick, too
     } else if (law.grip == Grip::kSmooth && limit > 0 && pressure > kPull * unit) {
       change.urgency = limit / unit;
       change.contact.law.grip = Grip::kStick;
@@ -236,9 +238,12 @@ void BodyContacts::set_terms(BodyContact& contact) const {
   if (was) contact.bounce = 0;
   contact.give = (contact.bounce > 0 ? kImpact : 1) * probe.give;
   law.held = was ? was->law.force : Vec3(Vec3::Zero());
-  law.may_rest = eased_ > 0;
+  law.may_rest = lagged_ || eased_ > 0;
   law.bound = -1;
-  if (lagged_) law.bound = law.friction * std::max(0.0, -law.lever.dot(law.held) / probe.radius);
+  if (lagged_) {
+    law.bound = law.friction * std::max(0.0, -law.lever.dot(law.held) / probe.radius);
+    law.grip = law.bound > 0 ? Grip::kSlip : Grip::kSmooth;
+  }
   law.sunk = sunk(contact, was);
 }
 

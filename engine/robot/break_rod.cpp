@@ -26,9 +26,6 @@ void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
     RobotTendon tendon{static_cast<int>(k), &spec, nullptr};
     for (const DriveSpec& drive : scene.drives)
       if (drive.tendon == tendon.index) tendon.drive = &drive;
-    if (scene.planar_normal && tendon.drive &&
-        tendon.drive->quantity == DriveQuantity::kDisplacement)
-      throw std::invalid_argument("tendon '" + spec.name + "' is displaced in a planar scene");
     rod.tendons.push_back(tendon);
     for (const double s : Tendon(spec).breaks())
       rod.break_at(s);

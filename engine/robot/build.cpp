@@ -168,7 +168,7 @@ RodPlan plan_of(const Robot& robot, const RobotRod& rod) {
     plan.stations.push_back(load->rod_s);
   plan.stations.insert(plan.stations.end(), rod.breaks.begin(), rod.breaks.end());
   for (const RobotTendon& tendon : rod.tendons)
-    plan.tendons.emplace_back(*tendon.spec);
+    plan.tendons.emplace_back(*tendon.spec, has(Effect::kTendonFriction));
   plan.solver = &scene.solver;
   return plan;
 }

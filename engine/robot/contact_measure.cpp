@@ -49,4 +49,37 @@ PairDistance RodContacts::measure(const ContactPair& pair) const {
   return out;
 }
 
+ContactSample RodContacts::sample() {
+  ContactSample out;
+  bodies_.add_to(out);
+  for (Rod& rod : rods_) {
+    if (far_away(rod)) continue;
+    scan(rod);
+    out.penetration = std::max(out.penetration, -rod.scan.clearance);
+    const std::vector<RodContact>& contacts = rod.side->contacts();
+    const std::vector<ContactRows>& rows = rod.side->contact_state();
+    for (std::size_t i = 0; i < contacts.size() && i < rows.size(); ++i) {
+      if (contacts[i].role == ContactRole::kEcho) continue;
+      const Vec3& n = rows[i].at.n;
+      const double pressure = n.dot(contacts[i].force);
+      ContactPoint at;
+      at.rod = static_cast<int>(rod.index);
+      at.position = point(rod, contacts[i].cell, contacts[i].xi) - rod.radius * n;
+      at.normal = n;
+      at.force = contacts[i].force;
+      at.slip = rows[i].slip - n.dot(rows[i].slip) * n;
+      at.gap = rows[i].at.d - rod.radius;
+      at.other = pair_of(rod, rod.obstacles[static_cast<std::size_t>(contacts[i].surface)])[1];
+      out.points.push_back(at);
+      ++out.count;
+      out.force += pressure;
+      out.friction += (contacts[i].force - pressure * n).norm();
+      out.slip = std::max(out.slip, at.slip.norm());
+    }
+  }
+  for (const ContactPair& pair : robot_.scene->watched)
+    if (pair[0].rod || pair[1].rod) out.distances.push_back(measure(pair));
+  return out;
+}
+
 }  // namespace cprsim

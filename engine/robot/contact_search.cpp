@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The geometry of it: how near a rod is to what, where it is lowest, and where points belong.
+// The geometry of it: where a rod is lowest, and where points belong.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -101,96 +101,6 @@ double RodContacts::lowest(const Rod& rod, std::size_t obstacle, std::size_t cel
     xi = d1 < d2 ? x1 : x2;
   }
   return best;
-}
-
-double RodContacts::moved(const Rod& rod, const Scan& since) const {
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  if (since.nodes.size() != nodes.size()) return std::numeric_limits<double>::infinity();
-  double own = 0, most = 0;
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    own = std::max(own, (position_of(nodes[k]) - since.nodes[k]).norm());
-  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
-    const Obstacle& obstacle = rod.obstacles[o];
-    double far = own;
-    if (obstacle.body >= 0) {
-      far = 0;
-      const Pose shift = robot_.body_pose(obstacle.body) * since.bodies[o].inverse();
-      for (std::size_t k = 0; k < nodes.size(); ++k)
-        far = std::max(far, (position_of(nodes[k]) - shift * since.nodes[k]).norm());
-    } else if (obstacle.rod >= 0) {
-      const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
-      far = 0;
-      for (std::size_t k = 0; k < nodes.size(); ++k) {
-        const Vec3 by = position_of(nodes[k]) - since.nodes[k];
-        for (std::size_t m = 0; m < others.size(); ++m)
-          far = std::max(far, (by - position_of(others[m]) + since.others[o][m]).squaredNorm());
-      }
-      far = std::sqrt(far);
-    }
-    most = std::max(most, far);
-  }
-  return most;
-}
-
-/// How far a cell's ends have moved, seen from an obstacle.
-double RodContacts::passed(const Rod& rod, const Scan& since, std::size_t o, std::size_t c) const {
-  const Obstacle& obstacle = rod.obstacles[o];
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  const Pose shift =
-      obstacle.body < 0 ? Pose{} : robot_.body_pose(obstacle.body) * since.bodies[o].inverse();
-  const Vec3 by[2] = {position_of(nodes[c]) - shift * since.nodes[c],
-                      position_of(nodes[c + 1]) - shift * since.nodes[c + 1]};
-  if (obstacle.rod < 0) return std::max(by[0].norm(), by[1].norm());
-  const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
-  const std::size_t foot = near(since, rod, c, o).foot;
-  double far = 0;
-  for (std::size_t k = foot > 0 ? foot - 1 : 0; k < std::min(foot + 3, others.size()); ++k) {
-    const Vec3 their = position_of(others[k]) - since.others[o][k];
-    far = std::max({far, (by[0] - their).norm(), (by[1] - their).norm()});
-  }
-  return far;
-}
-
-// Twice, since a cell between its ends moves with their tangents too.
-bool RodContacts::far_away(const Rod& rod) const {
-  return rod.side->contacts().empty() && 2 * moved(rod, rod.scan) < rod.scan.clearance;
-}
-
-void RodContacts::scan(Rod& rod) const {
-  Scan& out = rod.scan;
-  const std::vector<NodeState>& nodes = rod.side->contact_nodes();
-  out.nodes.clear();
-  for (const NodeState& node : nodes)
-    out.nodes.emplace_back(position_of(node));
-  out.near.assign((nodes.size() - 1) * rod.obstacles.size(), {});
-  out.clearance = std::numeric_limits<double>::infinity();
-  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
-    const Obstacle& obstacle = rod.obstacles[o];
-    for (std::size_t c = 0; c + 1 < nodes.size(); ++c) {
-      // a distance changes no faster than one walks, that of a rod from itself twice as fast: what
-      // is far along it begins later as one walks on, until nothing is left
-      const double walk = (obstacle.itself ? 2.2 : 1.1) * length(rod, c);
-      const double here = distance(rod, o, c, 0).d, there = distance(rod, o, c + 1, 0).d;
-      double d = std::isfinite(there) ? 0.5 * (here + there - walk) : here - walk;
-      double xi = 0.5;
-      if (d < rod.radius) d = lowest(rod, o, c, xi);
-      out.clearance = std::min(out.clearance, d - rod.radius);
-      Near& near = out.near[c * rod.obstacles.size() + o];
-      near = {d, distance(rod, o, c, xi).n, 0};
-      if (obstacle.rod >= 0) near.foot = foot(rod, obstacle, c, xi).cell;
-    }
-  }
-  if (!robot_.rods_meet) return;
-  out.bodies.assign(rod.obstacles.size(), {});
-  out.others.assign(rod.obstacles.size(), {});
-  for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
-    const Obstacle& obstacle = rod.obstacles[o];
-    if (obstacle.body >= 0) out.bodies[o] = robot_.body_pose(obstacle.body);
-    if (obstacle.rod < 0) continue;
-    for (const NodeState& node :
-         rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes())
-      out.others[o].emplace_back(position_of(node));
-  }
 }
 
 /// What a joint holds cannot be pushed.
@@ -321,7 +231,9 @@ bool RodContacts::follow(Rod& rod, RodContact& contact, const ContactRows& rows,
 
 // New points: the lowest between two nodes, or a node that is not above what its cells' lowest are.
 // On a flat face all nodes that sank: they will lie on it in a line.
-void RodContacts::search(std::size_t index, std::vector<Change>& changes) const {
+// Late in a solve a point near one that touches the same rod is left to the next solve, which may
+// move that: where rods are nearly parallel both would pull by turns.
+void RodContacts::search(std::size_t index, std::vector<Change>& changes, bool late) const {
   const Rod& rod = rods_[index];
   const std::vector<RodContact>& contacts = rod.side->contacts();
   const double noticed = rod.radius * (1 - kNotice), fine = kNotice * rod.radius;
@@ -346,7 +258,16 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes) const 
              (contact.cell == cell || (contact.at_node() && contact.cell == cell + 1));
     });
   };
+  const auto settled = [&](std::size_t o, double at) {
+    return late && rod.obstacles[o].rod >= 0 &&
+           std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
+             const double other = static_cast<double>(contact.cell) + contact.xi;
+             return contact.role != ContactRole::kEcho && contact.surface == static_cast<int>(o) &&
+                    std::abs(at - other) < 1;
+           });
+  };
   const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {
+    if (settled(o, static_cast<double>(cell) + xi)) return;
     const RodContact contact = new_contact(rod, o, cell, xi);
     // what had sunk before may lie deep
     const double depth = rod.radius + contact.sunk - d;

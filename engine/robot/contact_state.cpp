@@ -31,7 +31,7 @@ void RodContacts::visit(Archive& archive) {
       const int other = rod.obstacles[k % obstacles].rod;
       const std::size_t feet =
           other < 0 ? 1 : rods_[static_cast<std::size_t>(other)].side->contact_grid().size() - 1;
-      near.foot = archive.count(near.foot, feet - 1);
+      near.foot = archive.count(near.foot, feet);
     }
     for (Pose& body : scan.bodies)
       archive(body);

@@ -26,6 +26,12 @@ double order(const RodContact& contact) {
   return static_cast<double>(contact.cell) + (contact.at_node() ? 0 : 0.5);
 }
 
+bool same_place(const RodContact& a, const RodContact& b) {
+  // a point in a cell slides along its rod; a node comes or goes
+  return a.surface == b.surface &&
+         (a.at_node() && b.at_node() ? a.cell == b.cell : std::abs(order(a) - order(b)) <= 1);
+}
+
 }  // namespace
 
 // Of neighbours that pull, only the hardest lets go: the others may press once it has.
@@ -63,6 +69,8 @@ void RodContacts::review(std::size_t index, std::vector<Change>& changes) const 
       change.urgency = -pressure / unit;
       change.drop = contact.grip != Grip::kStick || contact.friction == 0 || eased_ == 0;
       change.contact.grip = Grip::kSlip;
+    } else if (lagged_ && contact.grip == Grip::kSlip) {
+      continue;  // its rows are those of stick, too
     } else if (contact.grip == Grip::kSmooth && limit > 0 && pressure > kPull * unit) {
       // as it moved without friction, as far as that is a way at all
       change.urgency = limit / unit;
@@ -183,7 +191,7 @@ bool RodContacts::revise(int round) {
           follow(rod, contacts[i], rod.side->contact_state()[i], round < kHeld))
         again = true;
     review(r, changes);
-    search(r, changes);
+    search(r, changes, round >= kPatience);
   }
   if (changes.empty() && !again) {
     update_echoes();
@@ -244,14 +252,8 @@ void RodContacts::begin_step() {
   for (Rod& rod : rods_) {
     rod.before = rod.side->contacts();
     rod.begun = rod.side->contact_nodes();
-    for (RodContact& contact : rod.side->contacts()) {
-      contact.sunk = contact.lag = 0;
-      contact.may_rest = eased_ > 0;
-      contact.bound = -1;
-      if (lagged_)
-        contact.bound =
-            contact.friction * std::max(0.0, -contact.lever.dot(contact.force) / rod.radius);
-    }
+    for (RodContact& contact : rod.side->contacts())
+      set_terms(rod, contact);
     // while a rod is far away, the distances of an older scan will do
     if (rod.scan.nodes.empty() || touches(rod) || 8 * moved(rod, rod.scan) >= rod.scan.clearance)
       scan(rod);
@@ -263,28 +265,34 @@ void RodContacts::begin_stage(double since) {
   left_ = recovery_ > 0 ? std::exp(-since / recovery_) : 0;
   rates_ = true;
   if (bodies_.any()) bodies_.begin_stage(left_, since);
-  for (Rod& rod : rods_)
-    for (RodContact& contact : rod.side->contacts()) {
-      if (contact.role == ContactRole::kEcho) continue;
-      contact.sunk = sunk(rod, contact);
-      contact.lag = rod.obstacles[static_cast<std::size_t>(contact.surface)].lag;
-    }
+  refresh();
+}
+
+/// What the step asks of a contact, whichever guess it came with.
+void RodContacts::set_terms(const Rod& rod, RodContact& contact) const {
+  contact.may_rest = lagged_ || eased_ > 0;
+  if (contact.role == ContactRole::kEcho) return;
+  contact.bound = -1;
+  if (lagged_) {
+    const auto was = std::find_if(rod.before.begin(), rod.before.end(), [&](const RodContact& c) {
+      return c.role != ContactRole::kEcho && same_place(c, contact);
+    });
+    const double pressure = was == rod.before.end() ? 0 : -was->lever.dot(was->force) / rod.radius;
+    contact.bound = contact.friction * std::max(0.0, pressure);
+    contact.grip = contact.bound > 0 ? Grip::kSlip : Grip::kSmooth;
+  }
+  contact.sunk = sunk(rod, contact);
+  contact.lag = rates_ ? rod.obstacles[static_cast<std::size_t>(contact.surface)].lag : 0;
 }
 
 void RodContacts::refresh() {
   bodies_.refresh();
-  if (lagged_) return;
   for (Rod& rod : rods_)
     for (RodContact& contact : rod.side->contacts())
-      contact.bound = -1;
+      set_terms(rod, contact);
 }
 
 bool RodContacts::changed(const Rod& rod, bool soft_too) {
-  const auto same_place = [](const RodContact& a, const RodContact& b) {
-    // a point in a cell slides along its rod; a node comes or goes
-    return a.surface == b.surface &&
-           (a.at_node() && b.at_node() ? a.cell == b.cell : std::abs(order(a) - order(b)) <= 1);
-  };
   // echoes change with the contacts whose they are
   const auto of_interest = [&](const std::vector<RodContact>& all,
                                const std::vector<RodContact>& others) {
@@ -355,39 +363,6 @@ std::string RodContacts::overlap() {
       }
   }
   return bodies_.overlap();
-}
-
-ContactSample RodContacts::sample() {
-  ContactSample out;
-  bodies_.add_to(out);
-  for (Rod& rod : rods_) {
-    if (far_away(rod)) continue;
-    scan(rod);
-    out.penetration = std::max(out.penetration, -rod.scan.clearance);
-    const std::vector<RodContact>& contacts = rod.side->contacts();
-    const std::vector<ContactRows>& rows = rod.side->contact_state();
-    for (std::size_t i = 0; i < contacts.size() && i < rows.size(); ++i) {
-      if (contacts[i].role == ContactRole::kEcho) continue;
-      const Vec3& n = rows[i].at.n;
-      const double pressure = n.dot(contacts[i].force);
-      ContactPoint at;
-      at.rod = static_cast<int>(rod.index);
-      at.position = point(rod, contacts[i].cell, contacts[i].xi) - rod.radius * n;
-      at.normal = n;
-      at.force = contacts[i].force;
-      at.slip = rows[i].slip - n.dot(rows[i].slip) * n;
-      at.gap = rows[i].at.d - rod.radius;
-      at.other = pair_of(rod, rod.obstacles[static_cast<std::size_t>(contacts[i].surface)])[1];
-      out.points.push_back(at);
-      ++out.count;
-      out.force += pressure;
-      out.friction += (contacts[i].force - pressure * n).norm();
-      out.slip = std::max(out.slip, at.slip.norm());
-    }
-  }
-  for (const ContactPair& pair : robot_.scene->watched)
-    if (pair[0].rod || pair[1].rod) out.distances.push_back(measure(pair));
-  return out;
 }
 
 }  // namespace cprsim

@@ -115,8 +115,8 @@ class RodContacts {
   /// What a scan found in a cell: the least distance of the centreline from an obstacle.
   struct Near {
     double distance = 0;
-    Vec3 normal = Vec3::Zero();
-    std::size_t foot = 0;  ///< cell of the other rod
+    Vec3 normal = Vec3::Zero();  ///< zero: far away, the distance is a lower bound
+    std::size_t foot = 0;        ///< cell of the other rod; the number of its cells: somewhere
   };
 
   struct Scan {
@@ -183,6 +183,7 @@ class RodContacts {
   Foot foot(const Rod& rod, const Obstacle& obstacle, std::size_t cell, double xi) const;
   double beyond(const Rod& rod, const Obstacle& obstacle, std::size_t cell, double xi) const;
   double passed(const Rod& rod, const Scan& since, std::size_t obstacle, std::size_t cell) const;
+  void set_terms(const Rod& rod, RodContact& contact) const;
   bool place_foot(const Rod& rod, RodContact& contact) const;
   double sunk(const Rod& rod, const RodContact& contact) const;
   void update_echoes();
@@ -212,7 +213,7 @@ class RodContacts {
   void leap(Rod& rod, const RodContact& contact, double by, std::size_t& cell, double& xi) const;
   bool pulls_most(const Rod& rod, std::size_t contact) const;
   void review(std::size_t rod, std::vector<Change>& changes) const;
-  void search(std::size_t rod, std::vector<Change>& changes) const;
+  void search(std::size_t rod, std::vector<Change>& changes, bool late) const;
   RodContact new_contact(const Rod& rod, std::size_t obstacle, std::size_t cell, double xi) const;
   void apply(const std::vector<Change>& changes);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The linear side: condensed rods, global system, directions. Rows are J x + r = 0 with x in the
-// units of column_units() and rows in those of row_units(), so that pivoting compares like with
-// like.
+// The linear side: condensed rods, global system, directions. In J x + r = 0 x is in the units of
+// column_units(), rows in those of row_units(), so that pivoting compares like with like.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -13,15 +12,14 @@
 namespace cprsim {
 namespace {
 
-// Below this ratio of pivots T is treated as singular: it then holds no stiffness in some
-// direction.
+// Below this ratio of pivots T is singular: without stiffness in some direction.
 constexpr double kSingularPivot = 1e-10;
 
 // Likewise for the global system, and how well its rows must then be met.
 constexpr double kSingularSystem = 1e-13, kConsistent = 1e-6;
 
-// Joints that close a loop may say the same twice (a planar four-bar thrice), up to round-off that
-// elimination has magnified. Taken for a pivot it would throw the multipliers about.
+// Joints that close a loop may say the same twice (a planar four-bar thrice), up to magnified
+// round-off. Taken for a pivot it would throw the multipliers about.
 constexpr double kSingularLoop = 1e-12;
 
 }  // namespace
@@ -56,8 +54,11 @@ bool Equations::condense(bool keep_all) {
     if (!rod.model->linearize(robot_.port(rod.base), robot_.port(rod.tip), c)) return false;
     growth_ = std::max(growth_, c.growth);
     Elimination& e = eliminations_[i];
-    const Eigen::PartialPivLU<MatN> lu(MatN(c.T.topLeftCorner<N, N>()));
-    const VecN pivots = lu.matrixLU().diagonal().cwiseAbs();
+    const MatN T = c.T.topLeftCorner<N, N>();
+    const Eigen::PartialPivLU<MatN> lu(T);
+    VecN pivots = lu.matrixLU().diagonal().cwiseAbs();
+    // a straight rod in flight spins without inertia, which pivots of columns need not show
+    if (!rod.base_held) pivots = Eigen::FullPivLU<MatN>(T).matrixLU().diagonal().cwiseAbs();
     e.delayed = keep_all || !(pivots.minCoeff() > kSingularPivot * pivots.maxCoeff());
     if (e.delayed) {
       e.offset = offset;

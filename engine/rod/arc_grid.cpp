@@ -27,9 +27,13 @@ std::vector<double> arc_grid(int cells, std::vector<double> stations) {
   return grid;
 }
 
-std::vector<double> arc_grid(int cells, std::vector<double> stations, const SectionsAlong* along) {
+std::vector<double> all_stations(std::vector<double> stations, const SectionsAlong* along) {
   if (along) stations.insert(stations.end(), along->breaks().begin(), along->breaks().end());
-  return arc_grid(cells, std::move(stations));
+  return stations;
+}
+
+std::vector<double> arc_grid(int cells, std::vector<double> stations, const SectionsAlong* along) {
+  return arc_grid(cells, all_stations(std::move(stations), along));
 }
 
 std::vector<std::size_t> nodes_at(const std::vector<double>& grid,

@@ -13,6 +13,9 @@ namespace cprsim {
 /// equal as the count allows.
 std::vector<double> arc_grid(int cells, std::vector<double> stations);
 
+/// With those where a rod's sections are not smooth. @param along may be null.
+std::vector<double> all_stations(std::vector<double> stations, const SectionsAlong* along);
+
 /// The same with nodes also where a rod's sections are not smooth. @param along may be null.
 std::vector<double> arc_grid(int cells, std::vector<double> stations, const SectionsAlong* along);
 

@@ -387,7 +387,7 @@ RodResidual CollocationRod::evaluate(const Port& base, const Port& tip) {
     update_touch_nodes();
     touch_->begin_rows();
   }
-  if (finds_tensions()) add(tendons_->gaps());
+  if (finds_tensions()) add(tendon_gaps());
   section_evaluations_ += static_cast<long>(points_.size());
   return r;
 }

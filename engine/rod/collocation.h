@@ -33,6 +33,7 @@
 #include "engine/math/banded_elimination.h"
 #include "engine/math/bspline.h"
 #include "engine/rod/collocation_point.h"
+#include "engine/rod/effect_part.h"
 #include "engine/rod/end_wrench.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/nodal_contacts.h"
@@ -109,6 +110,10 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
     return tendons_ ? tendons_->observe() : std::vector<TendonSample>();
   }
 
+  void engage_friction() override {
+    if (tendons_) tendons_->engage_friction();
+  }
+
   RodField field() const override;
   RodEnergy energy() const override;
   double magnetic_energy(const MagneticSources& field) const override;
@@ -150,10 +155,15 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   void place_sites(const std::vector<double>& grid);
   void weigh(BsplineSpace& space) const;
   void place_tendons();
+  const VecX& tendon_gaps();
+
+  Eigen::Index freedoms() const override { return space_.freedoms(); }
+
   void describe_tendons(const Site& at, RodField& field) const;
   bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
   VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
   void find_direction(const Vec6& z, const Vec6& zeta_A);
+  VecX found_direction() const;
   void add_tension(Eigen::Index unknown, bool add) override;
   std::vector<Vec6> strain_rates(const VecX& direction) const override;
 
@@ -300,17 +310,17 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   Track rotation_track_{Track::Kind::kRotation};
   std::vector<Mat3> reference_rotations_;  ///< of the points, at the start of the step
 
-  std::unique_ptr<NodalContacts> touch_;  ///< of a rod that may touch something
+  EffectPart<NodalContacts> touch_;  ///< of a rod that may touch something
   std::vector<NodeState> touch_nodes_;
   std::vector<double> touch_grid_;
 
   long section_evaluations_ = 0;
 
-  std::unique_ptr<RodTendons> tendons_;  ///< sections: points
+  EffectPart<RodTendons> tendons_;  ///< sections: points
   TendonBorder border_;
   VecX tension_direction_;
   std::vector<Vec13> kept_residual_;
-  std::unique_ptr<RodDisks> disks_;  ///< null: none
+  EffectPart<RodDisks> disks_;  ///< null: none
 };
 
 }  // namespace cprsim

@@ -97,6 +97,7 @@ void CollocationRod::mark_positions() {
 
 std::vector<Track*> CollocationRod::tracks() {
   std::vector<Track*> all{&track_};
+  if (tendons_) all.push_back(tendons_->track());
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
   if (touch_ && touch_->turns()) all.push_back(touch_->turns());
   if (disks_ && disks_->turns()) all.push_back(disks_->turns());
@@ -104,6 +105,7 @@ std::vector<Track*> CollocationRod::tracks() {
 }
 
 void CollocationRod::fill_tracks() {
+  if (tendons_) tendons_->fill_track();
   if (touch_) touch_->fill_turns();
   if (disks_) disks_->fill_turns();
   const auto n = static_cast<Eigen::Index>(points_.size());
@@ -123,6 +125,7 @@ void CollocationRod::fill_tracks() {
 
 void CollocationRod::accept_tracks() {
   if (touch_) touch_->accept_contacts();
+  if (tendons_) tendons_->accept();
   if (disks_) disks_->accept();
   if (!options_.rotary_inertia) return;
   for (std::size_t j = 0; j < points_.size(); ++j)
@@ -131,6 +134,7 @@ void CollocationRod::accept_tracks() {
 
 void CollocationRod::start_tracks() {
   accept_tracks();
+  if (tendons_) tendons_->start_track();
   if (disks_) disks_->start();
   for (CollocationPoint& point : points_) {
     std::fill_n(point.spin.theta, 3, 0.0);
@@ -148,6 +152,7 @@ void CollocationRod::start_tracks() {
 // engine/rod/collocation_point.h say what it is of the strains.
 void CollocationRod::start_tracks_moving() {
   start_tracks();
+  if (tendons_) tendons_->start_track_moving(strain_rates(found_direction()));
   const auto n = static_cast<Eigen::Index>(points_.size());
   std::vector<Vec13> moving = control_;
   for (std::size_t k = 0; k < control_.size(); ++k) {

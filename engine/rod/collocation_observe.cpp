@@ -215,7 +215,7 @@ std::string CollocationRod::row_name(int row) const {
     }
     row -= width() * pieces_[g].points;
   }
-  if (row >= d) return "length of a tendon of " + name_;
+  if (row >= d) return "tendons of " + name_;
   return "tip of " + name_ + ", " + tip_.row_name(row);
 }
 

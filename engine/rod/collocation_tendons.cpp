@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tendons along a rod of splines: where they are asked, and tensions among the unknowns.
 #include "engine/math/so3.h"
+#include "engine/rod/arc_grid.h"
 #include "engine/rod/collocation.h"
 
 namespace cprsim {
@@ -16,7 +17,14 @@ void CollocationRod::place_tendons() {
       sections.push_back({sites_[j].s, inside, weights_[j], rest_curvature(sites_[j].s)});
   }
   tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.K_bt.head<2>().maxCoeff());
+                                          section_.K_bt.head<2>().maxCoeff(),
+                                          all_stations(options_.stations, options_.along.get()));
+}
+
+const VecX& CollocationRod::tendon_gaps() {
+  for (std::size_t j = 0; tendons_->rub() && j < points_.size(); ++j)
+    tendons_->set_curvature(j, points_[j].u);
+  return tendons_->gaps();
 }
 
 void CollocationRod::describe_tendons(const Site& at, RodField& field) const {
@@ -32,6 +40,10 @@ void CollocationRod::describe_tendons(const Site& at, RodField& field) const {
 
 VecX CollocationRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
   find_direction(z, zeta_A);
+  return found_direction();
+}
+
+VecX CollocationRod::found_direction() const {
   VecX all(13 * static_cast<Eigen::Index>(direction_.size()));
   for (std::size_t k = 0; k < direction_.size(); ++k)
     all.segment<13>(13 * static_cast<Eigen::Index>(k)) = direction_[k];
@@ -50,7 +62,7 @@ void CollocationRod::add_tension(Eigen::Index unknown, bool add) {
     row += g > 0;
     for (int i = 0; i < pieces_[g].points; ++i, ++row) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
-      const Vec6 Lambda = tendons_->per_tension(unknown, j);
+      const Vec6 Lambda = tendons_->per_unknown(unknown, j);
       residual_[row].segment<3>(kQ + 1) += model(j).C_bt.cwiseProduct(Lambda.head<3>());
       residual_[row].segment<3>(kP) += points_[j].R * model(j).C_se.cwiseProduct(Lambda.tail<3>());
     }

@@ -60,10 +60,6 @@ Method fitting_method(const RodPlan& plan, std::string& why) {
     why = "auto: <space> is collocation's";
     return Method::kCollocation;
   }
-  if (plan.plane && !plan.tendons.empty()) {
-    why = "auto: in a plane shooting knows no tendons, and the strain basis is the next fastest";
-    return Method::kStrain;
-  }
   if (plan.limpness > kLimp && !plan.touches) {
     why = "auto: it hangs like a cable, to which shooting does not find its way";
     return Method::kStrain;

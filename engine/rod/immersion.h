@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/model/rod_spec.h"
+#include "engine/rod/effect_part.h"
 #include "engine/rod/rod_model.h"
 #include "engine/section/fluid_section.h"
 #include "engine/section/outer_field.h"
@@ -36,15 +37,15 @@ class Immersion {
 
   /// Whether a force acts in the present solve: something moves, the rod or the fluid, or there are
   /// loads along the rod.
-  bool acts() const { return acts_; }
+  bool acts() const { return !kBare && acts_; }
 
   /// Whether there are moments per length, too.
-  bool loaded() const { return loaded_; }
+  bool loaded() const { return !kBare && loaded_; }
 
   /// Null where no field acts on this rod.
   const OuterField* field() const { return in_field_ || !forces_.empty() ? &field_ : nullptr; }
 
-  bool field_varies() const { return in_field_ && field_.magnetic.count > 0; }
+  bool field_varies() const { return !kBare && in_field_ && field_.magnetic.count > 0; }
 
   FluidSection* at(std::size_t place) { return &places_[place]; }
 

@@ -55,9 +55,9 @@ Pose section_frame(const RodPlan& plan) {
 std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
   if (plan.plane) {
-    if (plan.along || !spec.rest_curvature.isZero(0) || !plan.tendons.empty())
+    if (plan.along || !spec.rest_curvature.isZero(0))
       throw std::invalid_argument("shooting in a plane knows rod '" + spec.name +
-                                  "' straight at rest, with even sections and without tendons");
+                                  "' straight at rest and with even sections");
     return std::make_unique<PlanarRod>(spec.name, hold_of(plan, spec.base, plan.X_WBase),
                                        hold_of(plan, spec.tip, plan.X_WTip), *plan.plane,
                                        plan.X_WBase, spin_frame(plan), plan.section, plan.length,

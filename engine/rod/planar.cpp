@@ -74,6 +74,7 @@ PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Ma
                 (options.rotary_inertia ? static_cast<Eigen::Index>(disks_.size()) : 0));
   if (options.drag || options.line_loads) place_surroundings();
   forcing_.length = length;
+  if (!options.tendons.empty()) place_tendons();
   const Vec3 tangent = plane_.transpose() * X_WBase.R.col(2);
   set_straight(std::atan2(tangent.y(), tangent.x()), plane_.leftCols<2>().transpose() * X_WBase.p);
 }
@@ -91,8 +92,10 @@ void PlanarRod::place_surroundings() {
 
 void PlanarRod::enter(std::size_t cell) {
   model_.h = (grid_[cell + 1] - grid_[cell]) * forcing_.length;
-  if (!around_) return;
+  if (!around_ && !tendons_) return;
   model_.first = cell * static_cast<std::size_t>(table_->stages);
+  if (tendons_) model_.pulls = tendons_->at(model_.first);
+  if (!around_) return;
   model_.around = around_->at(model_.first);
 }
 
@@ -172,6 +175,11 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
     const Immersion& fluid = around_->in_space();
     if (fluid.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
     k += fluid.stiffness();
+  }
+  if (tendons_) {
+    law_ = immersed(law_) ? CellLaw::kTendonsFluid : CellLaw::kTendons;
+    tendons_->in_space().set(forcing.tendons);
+    model_.tendons = tendons_.get();
   }
   kernel_ = planar_kernel(table_->stages, law_);
   scale_ = {L, K_b_ / (L * L), K_b_ / L};
@@ -347,6 +355,9 @@ RodResidual PlanarRod::evaluate(const Port& base, const Port& tip) {
         add(v / noise_);
   }
   add_end(end_value(tip_, state, place(tip), noise_) - tip_gap_);
+  if (finds_tensions())
+    for (double gap : tendons_->in_space().gaps())
+      add(gap);
   evaluated_ = r.finite;
   return r;
 }
@@ -367,11 +378,13 @@ std::string PlanarRod::row_name(int row) const {
     return "strain law of " + name_ + " in cell " + std::to_string(cell + 1) + " of " +
            std::to_string(cells_);
   }
+  if (row >= law + 3) return "tendons of " + name_;
   return "tip of " + name_ + ", " + kRows[static_cast<int>(tip_)][row - law];
 }
 
 int PlanarRod::unknown_count() const {
-  return 6 * segments() + static_cast<int>(stages_.size()) * (lifts_stretch(law_) ? 3 : 1);
+  return 6 * segments() + static_cast<int>(stages_.size()) * (lifts_stretch(law_) ? 3 : 1) +
+         static_cast<int>(tendon_unknowns());
 }
 
 }  // namespace cprsim

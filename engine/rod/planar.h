@@ -10,13 +10,14 @@
 #include "engine/model/planar.h"
 #include "engine/rod/planar_cell.h"
 #include "engine/rod/planar_immersion.h"
+#include "engine/rod/planar_tendons.h"
 #include "engine/rod/shooting.h"
 
 namespace cprsim {
 
 using Mat6x3 = Eigen::Matrix<double, 6, 3>;
 
-class PlanarRod final : public RodModel {
+class PlanarRod final : public RodModel, private TensionedRod {
  public:
   /// Straight and unloaded from the base frame.
   /// @param plane axes e1, e2, normal as columns, world. @param R_WSection section axes up to a
@@ -39,7 +40,7 @@ class PlanarRod final : public RodModel {
   void bow(const Port& base, const Port& tip) override;
   void mark_positions() override;
 
-  std::vector<Track*> tracks() override { return {&track_}; }
+  std::vector<Track*> tracks() override;
 
   void fill_tracks() override;
 
@@ -47,7 +48,17 @@ class PlanarRod final : public RodModel {
     return 2 * static_cast<Eigen::Index>(stages_.size() + nodes_.size());
   }
 
-  void accept_tracks() override {}
+  void accept_tracks() override {
+    if (tendons_) tendons_->in_space().accept();
+  }
+
+  void engage_friction() override {
+    if (tendons_) tendons_->in_space().engage_friction();
+  }
+
+  std::vector<TendonSample> tendons() const override {
+    return tendons_ ? tendons_->in_space().observe() : std::vector<TendonSample>();
+  }
 
   void start_tracks() override;
   void start_tracks_moving() override;
@@ -92,6 +103,26 @@ class PlanarRod final : public RodModel {
   void apply_load(std::size_t node, PlanarNode& state) const;
   Vec3 planar_wrench(const PlanarNode& node, const Place& at) const;
   Vec6 to_world(const Vec3& wrench) const;
+
+  // tendons
+  void place_tendons();
+
+  Eigen::Index tendon_unknowns() const { return tendons_ ? tendons_->in_space().unknowns() : 0; }
+
+  bool finds_tensions() const { return tendon_unknowns() > 0; }
+
+  Eigen::Index count_values() const;
+
+  Eigen::Index freedoms() const override { return 3; }
+
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
+  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
+  void find_direction(const Vec6& z, const Vec6& zeta_A);
+  VecX found_direction() const;
+  void take_direction(const VecX& direction);
+  void add_tension(Eigen::Index unknown, bool add) override;
+  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+  void describe_tendons(RodField& field) const;
 
   // linearisation
   void start_columns(const Place& base, double* Y) const;
@@ -185,6 +216,10 @@ class PlanarRod final : public RodModel {
   };
 
   std::unique_ptr<PlanarImmersion> around_;  ///< null where nothing lies around it
+  std::unique_ptr<PlanarTendons> tendons_;   ///< sections: stages
+  TendonBorder border_;
+  VecX tension_direction_;
+  std::vector<PlanarStage> kept_stages_;  ///< while residuals are those of add_tension()
   std::vector<Disk> disks_;
   Eigen::Index disk_angles_ = 0;  ///< where theirs begin, with rotary inertia
   long section_evaluations_ = 0;

@@ -8,6 +8,7 @@
 // Rotations about one axis commute, so that angles are integrated as they are, and the rate of the
 // section's angular momentum, k_J theta + b_J, is linear: k_J = rho I c_v c_w, with the scheme's
 // history in b_J. Stage curvatures, and stretches where (5) is not explicit, are lifted as there.
+// With tendons m, n·t and n·d in (4), (5) are less what they pull with.
 #pragma once
 
 #include "engine/rod/cell.h"
@@ -26,7 +27,14 @@ struct PlanarAround {
   double n[2], n_p[4], n_theta[2], m, m_p[2], m_theta;
 };
 
+/// What tendons pull with at a section (engine/rod/planar_tendons.h): moment, and force along t and
+/// d; by kappa, v_t, v_d.
+struct PlanarPull {
+  double value[3], by[9];
+};
+
 class PlanarImmersion;
+class PlanarTendons;
 
 /// What all cells of a rod share during one solve.
 struct PlanarModel {
@@ -38,6 +46,8 @@ struct PlanarModel {
   PlanarImmersion* immersion = nullptr;  ///< for the laws of a fluid
   const PlanarAround* around = nullptr;  ///< of the cell's stages
   std::size_t first = 0;                 ///< the first of these
+  PlanarTendons* tendons = nullptr;      ///< for the laws of tendons
+  const PlanarPull* pulls = nullptr;     ///< of the cell's stages
 };
 
 struct PlanarStage {

@@ -163,6 +163,14 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
       stretch.r[kAffine] += at.residual_v[0];
       shear.r[kAffine] += at.residual_v[1];
     }
+    if constexpr (has_tendons(law)) {
+      const double* by = M.pulls[j].by;
+      const int lifted[3] = {j, S + 2 * j, S + 2 * j + 1};
+      const double C[3] = {M.C_b, M.C_v[0], M.C_v[1]};
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+          rows[lifted[i]].r[lifted[k]] += C[i] * by[3 * i + k];
+    }
   }
   if (!eliminate<L, W>(rows)) return false;
   for (int i = 0; i < L; ++i)
@@ -217,11 +225,13 @@ const PlanarKernel& CPRSIM_PLANAR_KERNEL(int stages, CellLaw law) {
       return kKernels<CellLaw::kKirchhoffFluid>[stages - 1];
     case CellLaw::kExtensibleFluid:
       return kKernels<CellLaw::kExtensibleFluid>[stages - 1];
+    case CellLaw::kTendons:
+      return kKernels<CellLaw::kTendons>[stages - 1];
+    case CellLaw::kTendonsFluid:
+      return kKernels<CellLaw::kTendonsFluid>[stages - 1];
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
     case CellLaw::kExtensibleGeneral:
-    case CellLaw::kTendons:
-    case CellLaw::kTendonsFluid:  // not in a plane
       break;
   }
   return kKernels<CellLaw::kExtensible>[stages - 1];

@@ -177,7 +177,7 @@ bool PlanarRod::sweep_columns(const Place& base) {
   return true;
 }
 
-bool PlanarRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+bool PlanarRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
   columns_ = base.moves ? kPlanarWide : kPlanarNarrow;
   const Place base_place = place(base);
   if (!sweep_columns(base_place)) return false;
@@ -272,7 +272,7 @@ Vec6 PlanarRod::wrench_on_tip(const Port& tip) const {
   return to_world(-planar_wrench(nodes_.back(), place(tip)));
 }
 
-void PlanarRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
+void PlanarRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
   const auto M = static_cast<std::size_t>(segments());
   const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto width = static_cast<std::size_t>(columns_);
@@ -303,6 +303,7 @@ void PlanarRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
 }
 
 void PlanarRod::keep() {
+  if (finds_tensions()) tendons_->in_space().keep();
   kept_starts_ = starts_;
   kept_lifted_.resize(3 * stages_.size());
   for (std::size_t j = 0; j < stages_.size(); ++j) {
@@ -312,6 +313,7 @@ void PlanarRod::keep() {
 }
 
 void PlanarRod::move(double alpha) {
+  if (finds_tensions()) tendons_->in_space().move(alpha, tension_direction_);
   for (std::size_t g = 0; g < starts_.size(); ++g) {
     const Vec6& d = start_direction_[g];
     PlanarNode& s = starts_[g];

@@ -8,6 +8,7 @@
 #include "engine/rod/planar_cell.h"
 #include "engine/rod/planar_immersion.h"
 #include "engine/rod/planar_steps.h"
+#include "engine/rod/planar_tendons.h"
 
 namespace cprsim {
 namespace {
@@ -100,6 +101,13 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
       at.residual_v[0] = at.v[0] - at.v0[0] - M.C_v[0] * (at.c * at.n[0] + at.s * at.n[1]);
       at.residual_v[1] = at.v[1] - at.v0[1] - M.C_v[1] * (at.c * at.n[1] - at.s * at.n[0]);
     }
+    if constexpr (has_tendons(law)) {
+      M.tendons->evaluate(M.first + static_cast<std::size_t>(j), at);
+      const double* pull = M.pulls[j].value;
+      at.residual_kappa += M.C_b * pull[0];
+      for (int i = 0; i < 2; ++i)
+        at.residual_v[i] += M.C_v[i] * pull[1 + i];
+    }
   }
   double c, s;
   cosine_sine(turn_end, c, s);
@@ -134,11 +142,13 @@ PlanarEvaluate planar_evaluate(int stages, CellLaw law) {
       return kEvaluations<CellLaw::kKirchhoffFluid>[stages - 1];
     case CellLaw::kExtensibleFluid:
       return kEvaluations<CellLaw::kExtensibleFluid>[stages - 1];
+    case CellLaw::kTendons:
+      return kEvaluations<CellLaw::kTendons>[stages - 1];
+    case CellLaw::kTendonsFluid:
+      return kEvaluations<CellLaw::kTendonsFluid>[stages - 1];
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
     case CellLaw::kExtensibleGeneral:
-    case CellLaw::kTendons:
-    case CellLaw::kTendonsFluid:  // not in a plane
       break;
   }
   return kEvaluations<CellLaw::kExtensible>[stages - 1];

@@ -17,6 +17,7 @@ RodField PlanarRod::field() const {
   for (const PlanarStage& stage : stages_)
     f.points.push_back({rotation(stage.c, stage.s), in_world(stage.tau), in_world(stage.n),
                         stage.m * plane_.col(2)});
+  if (tendons_) describe_tendons(f);
   for (std::size_t j = 0; around_ && around_->in_space().field() && j < stages_.size(); ++j) {
     const std::size_t cell = j / static_cast<std::size_t>(table_->stages);
     f.magnetic.push_back(

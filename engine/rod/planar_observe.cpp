@@ -61,6 +61,7 @@ void PlanarRod::mark_positions() {
 }
 
 void PlanarRod::fill_tracks() {
+  if (tendons_) tendons_->in_space().fill_track();
   double* x = track_.x.data();
   for (const PlanarStage& stage : stages_)
     x = std::copy_n(stage.p, 2, x);
@@ -81,7 +82,9 @@ void PlanarRod::fill_tracks() {
 }
 
 void PlanarRod::start_tracks() {
+  accept_tracks();
   fill_tracks();
+  if (tendons_) tendons_->in_space().start_track();
   track_.set_start(VecX(track_.x), VecX::Zero(track_.x.size()));
 }
 
@@ -90,6 +93,7 @@ void PlanarRod::start_tracks() {
 // dp_j = dp_a + h sum a_jk dtau_k, and where v is no unknown it follows from the law.
 void PlanarRod::start_tracks_moving() {
   start_tracks();
+  if (tendons_) tendons_->in_space().start_track_moving(strain_rates(found_direction()));
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto n = static_cast<Eigen::Index>(stages_.size());
@@ -149,11 +153,10 @@ void PlanarRod::start_tracks_moving() {
 }
 
 // values: curvature, stretch and shear of every stage, then six numbers for every segment's start,
-// then for every node.
+// then for every node; then those of tendons.
 RodModel::Unknowns PlanarRod::unknowns() const {
   Unknowns u;
-  u.values.resize(
-      static_cast<Eigen::Index>(3 * stages_.size() + 6 * (starts_.size() + nodes_.size())));
+  u.values.resize(count_values());
   double* to = u.values.data();
   for (const PlanarStage& stage : stages_) {
     *to++ = stage.kappa;
@@ -166,7 +169,14 @@ RodModel::Unknowns PlanarRod::unknowns() const {
       to = std::copy_n(node.n, 2, to);
       *to++ = node.m;
     }
+  if (finds_tensions())
+    u.values.tail(tendons_->in_space().unknowns()) = tendons_->in_space().values();
   return u;
+}
+
+Eigen::Index PlanarRod::count_values() const {
+  return static_cast<Eigen::Index>(3 * stages_.size() + 6 * (starts_.size() + nodes_.size())) +
+         tendon_unknowns();
 }
 
 void PlanarRod::set_unknowns(const Unknowns& u) {
@@ -179,7 +189,10 @@ void PlanarRod::set_unknowns(const Unknowns& u) {
   const auto set = [](PlanarNode& node, const double* x) {
     node = {x[0], {x[1], x[2]}, {x[3], x[4]}, x[5], std::cos(x[0]), std::sin(x[0])};
   };
-  const std::size_t all = (static_cast<std::size_t>(u.values.size()) - 3 * stages_.size()) / 6;
+  const Eigen::Index found = tendon_unknowns();
+  if (found > 0) tendons_->in_space().set_values(u.values.tail(found));
+  const std::size_t all =
+      (static_cast<std::size_t>(u.values.size() - found) - 3 * stages_.size()) / 6;
   const std::size_t then = all - nodes_.size();
   set(starts_.front(), from);
   // where segments were cut differently their starts are the nodes reached
@@ -192,8 +205,7 @@ void PlanarRod::set_unknowns(const Unknowns& u) {
 void PlanarRod::predict(const std::vector<const Unknowns*>& past,
                         const std::vector<double>& weights) {
   assert(!past.empty() && past.size() == weights.size());
-  const auto size =
-      static_cast<Eigen::Index>(3 * stages_.size() + 6 * (starts_.size() + nodes_.size()));
+  const Eigen::Index size = count_values();
   Unknowns sum;
   sum.values = VecX::Zero(size);
   for (std::size_t i = 0; i < past.size(); ++i) {
@@ -214,7 +226,9 @@ void PlanarRod::visit(Archive& archive) {
   segment_first_ = segment_starts(static_cast<int>(starts_.size()), cells_);
   archive.doubles(nodes_);
   if (around_) around_->in_space().visit(archive);
-  track_.visit(archive);
+  for (Track* track : tracks())
+    track->visit(archive);
+  if (tendons_) tendons_->in_space().visit(archive);
 }
 
 RodSample PlanarRod::observe() const {

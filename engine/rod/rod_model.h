@@ -199,6 +199,9 @@ class RodModel {
   /// At the last evaluate(), in the order given at construction.
   virtual std::vector<TendonSample> tendons() const { return {}; }
 
+  /// From here on, at the state last accepted, friction of tendons follows what they do.
+  virtual void engage_friction() {}
+
   /// The equilibrium at the last evaluate(), for stability and modes.
   virtual RodField field() const = 0;
   virtual RodEnergy energy() const = 0;

@@ -19,7 +19,8 @@ V3 plain(const Vec3& x) {
 }  // namespace
 
 RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
-                       const std::vector<AskedSection>& sections, double EI)
+                       const std::vector<AskedSection>& sections, double EI,
+                       const std::vector<double>& stations)
     : tendons_(std::move(tendons)), length_(length), tensions_(tendons_.size(), 0.0) {
   const std::size_t n = tendons_.size();
   stretch_.assign(n * sections.size(), 0);
@@ -51,6 +52,45 @@ RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
   }
   x_.assign(n, 0);
   prescribed_ = unloaded_;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (tendons_[k].friction() == 0) continue;
+    frictions_.push_back({k, TendonFriction(tendons_[k].friction(), tendons_[k].end(), k, length,
+                                            sections, stations)});
+    friction_unknowns_ += frictions_.back().law.unknowns();
+  }
+  track_.resize(static_cast<Eigen::Index>(n * (frictions_.empty() ? 1 : 1 + sections.size())));
+  if (frictions_.empty()) return;
+  curvatures_.assign(sections.size(), Vec3::Zero());
+  spread_.assign(n * sections.size(), 0);
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    sections_[i].tensions = spread_.data() + n * i;
+}
+
+const TendonFriction* RodTendons::friction_of(std::size_t tendon) const {
+  for (const Friction& friction : frictions_)
+    if (friction.tendon == tendon) return &friction.law;
+  return nullptr;
+}
+
+// Tensions at the sections follow from those at the motors.
+void RodTendons::spread_tensions() {
+  if (frictions_.empty()) return;
+  const std::size_t n = tendons_.size();
+  for (std::size_t i = 0; i < sections_.size(); ++i) {
+    std::copy_n(tensions_.data(), n, &spread_[n * i]);
+    for (const Friction& friction : frictions_)
+      spread_[n * i + friction.tendon] *= friction.law.factor(i);
+  }
+}
+
+void RodTendons::engage_friction() {
+  for (Friction& friction : frictions_)
+    friction.law.engage();
+}
+
+void RodTendons::accept() {
+  for (Friction& friction : frictions_)
+    friction.law.accept();
 }
 
 void RodTendons::set(const std::vector<TendonPull>& pulls) {
@@ -65,40 +105,53 @@ void RodTendons::set(const std::vector<TendonPull>& pulls) {
     }
     tensions_[i] = std::max(x_[i], 0.0);
   }
+  spread_tensions();
 }
 
 VecX RodTendons::values() const {
   VecX x(unknowns());
-  for (Eigen::Index k = 0; k < x.size(); ++k)
-    x[k] = x_[unknown_[static_cast<std::size_t>(k)]];
+  Eigen::Index k = 0;
+  for (const std::size_t i : unknown_)
+    x[k++] = x_[i];
+  for (const Friction& friction : frictions_) {
+    x.segment(k, friction.law.unknowns()) = friction.law.values();
+    k += friction.law.unknowns();
+  }
   return x;
 }
 
 void RodTendons::set_values(const VecX& x) {
-  for (Eigen::Index k = 0; k < x.size(); ++k) {
-    const std::size_t i = unknown_[static_cast<std::size_t>(k)];
-    x_[i] = x[k];
-    tensions_[i] = std::max(x[k], 0.0);
+  Eigen::Index k = 0;
+  for (const std::size_t i : unknown_) {
+    x_[i] = x[k++];
+    tensions_[i] = std::max(x_[i], 0.0);
   }
+  for (Friction& friction : frictions_) {
+    friction.law.set_values(x.segment(k, friction.law.unknowns()));
+    k += friction.law.unknowns();
+  }
+  spread_tensions();
 }
 
 // (1)
-VecX RodTendons::gaps() const {
+const VecX& RodTendons::gaps() {
   const std::vector<double> now = lengths();
-  VecX gap(unknowns());
-  for (Eigen::Index k = 0; k < gap.size(); ++k) {
-    const std::size_t i = unknown_[static_cast<std::size_t>(k)];
-    gap[k] = (now[i] - prescribed_[i] - slackness_[i] * std::min(x_[i], 0.0)) / length_;
+  gaps_.resize(unknowns());
+  Eigen::Index k = 0;
+  for (const std::size_t i : unknown_)
+    gaps_[k++] = (now[i] - prescribed_[i] - slackness_[i] * std::min(x_[i], 0.0)) / length_;
+  for (Friction& friction : frictions_) {
+    gaps_.segment(k, friction.law.unknowns()) = friction.law.gaps(sections_, curvatures_);
+    k += friction.law.unknowns();
   }
-  return gap;
+  return gaps_;
 }
 
-VecX RodTendons::gaps_by_tension() const {
-  VecX by(unknowns());
-  for (Eigen::Index k = 0; k < by.size(); ++k) {
-    const std::size_t i = unknown_[static_cast<std::size_t>(k)];
-    by[k] = x_[i] < 0 ? -slackness_[i] / length_ : 0;
-  }
+VecX RodTendons::gaps_by_own() const {
+  VecX by = VecX::Constant(unknowns(), -1);
+  Eigen::Index k = 0;
+  for (const std::size_t i : unknown_)
+    by[k++] = x_[i] < 0 ? -slackness_[i] / length_ : 0;
   return by;
 }
 
@@ -113,17 +166,32 @@ Vec6 RodTendons::stretch_by_strain(const TendonSection& section, std::size_t ten
 VecX RodTendons::gap_rates(const std::vector<Vec6>& strain_rates) const {
   VecX rates = VecX::Zero(unknowns());
   for (std::size_t i = 0; i < sections_.size(); ++i)
-    for (Eigen::Index k = 0; k < rates.size(); ++k)
-      rates[k] += weights_[i] / length_ *
-                  stretch_by_strain(sections_[i], unknown_[static_cast<std::size_t>(k)])
-                      .dot(strain_rates[i]);
+    for (std::size_t k = 0; k < unknown_.size(); ++k)
+      rates[static_cast<Eigen::Index>(k)] +=
+          weights_[i] / length_ * stretch_by_strain(sections_[i], unknown_[k]).dot(strain_rates[i]);
+  auto k = static_cast<Eigen::Index>(unknown_.size());
+  for (const Friction& friction : frictions_) {
+    rates.segment(k, friction.law.unknowns()) = friction.law.rates(sections_, strain_rates);
+    k += friction.law.unknowns();
+  }
   return rates;
 }
 
-Vec6 RodTendons::per_tension(Eigen::Index unknown, std::size_t section) const {
-  const std::size_t i = unknown_[static_cast<std::size_t>(unknown)];
-  if (x_[i] < 0) return Vec6::Zero();
-  return stretch_by_strain(sections_[section], i);
+Vec6 RodTendons::per_unknown(Eigen::Index unknown, std::size_t section) const {
+  auto k = unknown - static_cast<Eigen::Index>(unknown_.size());
+  if (k < 0) {
+    const std::size_t i = unknown_[static_cast<std::size_t>(unknown)];
+    if (x_[i] < 0) return Vec6::Zero();
+    const TendonFriction* friction = friction_of(i);
+    return (friction ? friction->factor(section) : 1) * stretch_by_strain(sections_[section], i);
+  }
+  for (const Friction& friction : frictions_) {
+    if (k < friction.law.unknowns())
+      return tensions_[friction.tendon] * friction.law.factor_by(k, section) *
+             stretch_by_strain(sections_[section], friction.tendon);
+    k -= friction.law.unknowns();
+  }
+  return Vec6::Zero();
 }
 
 MatX RodTendons::locked(const TendonSection& section) const {
@@ -151,9 +219,49 @@ std::vector<double> RodTendons::lengths() const {
 std::vector<TendonSample> RodTendons::observe() const {
   const std::vector<double> now = lengths();
   std::vector<TendonSample> samples;
-  for (std::size_t k = 0; k < now.size(); ++k)
-    samples.push_back({tensions_[k], unloaded_[k] - now[k]});
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    TendonSample& sample = samples.emplace_back();
+    sample.tension = sample.end_tension = tensions_[k];
+    sample.displacement = unloaded_[k] - now[k];
+    sample.rate = track_.v[static_cast<Eigen::Index>(k)];
+    const TendonFriction* friction = friction_of(k);
+    if (!friction) continue;
+    sample.end_tension *= friction->factor_at(tendons_[k].end(), tendons_[k].end());
+    sample.lost_rate = sample.rate;
+    for (std::size_t i = 0; i < sections_.size(); ++i) {
+      if (!sections_[i].places[k].there) continue;
+      sample.along.emplace_back(friction->factor(i), shortening(i, k));
+      sample.lost_rate -= friction->factor(i) * track_.v[place_in_track(i, k)];
+    }
+  }
   return samples;
+}
+
+void RodTendons::fill_track() {
+  const std::vector<double> now = lengths();
+  for (std::size_t k = 0; k < now.size(); ++k)
+    track_.x[static_cast<Eigen::Index>(k)] = unloaded_[k] - now[k];
+  if (frictions_.empty()) return;
+  for (std::size_t i = 0; i < sections_.size(); ++i)
+    for (std::size_t k = 0; k < now.size(); ++k)
+      track_.x[place_in_track(i, k)] = shortening(i, k);
+}
+
+void RodTendons::start_track() {
+  fill_track();
+  track_.set_start(VecX(track_.x), VecX::Zero(track_.x.size()));
+}
+
+void RodTendons::start_track_moving(const std::vector<Vec6>& strain_rates) {
+  fill_track();
+  VecX v = VecX::Zero(track_.x.size());
+  for (std::size_t i = 0; i < sections_.size(); ++i)
+    for (std::size_t k = 0; k < tendons_.size(); ++k) {
+      const double rate = -weights_[i] * stretch_by_strain(sections_[i], k).dot(strain_rates[i]);
+      v[static_cast<Eigen::Index>(k)] += rate;
+      if (!frictions_.empty()) v[place_in_track(i, k)] = rate;
+    }
+  track_.set_start(VecX(track_.x), v);
 }
 
 void RodTendons::visit(Archive& archive) {
@@ -161,6 +269,9 @@ void RodTendons::visit(Archive& archive) {
   archive.doubles(x_);
   archive.doubles(stretch_);
   archive.doubles(directions_);
+  for (Friction& friction : frictions_)
+    friction.law.visit(archive);
+  spread_tensions();
 }
 
 Mat6 RodTendons::stiffness(double s, double inside, const Vec3& u, const Vec3& v,
@@ -172,7 +283,10 @@ Mat6 RodTendons::stiffness(double s, double inside, const Vec3& u, const Vec3& v
   TendonSection section;
   section.count = static_cast<int>(tendons_.size());
   section.places = places.data();
-  section.tensions = tensions_.data();
+  std::vector<double> tensions = tensions_;
+  for (const Friction& friction : frictions_)
+    tensions[friction.tendon] *= friction.law.factor_at(s, inside);
+  section.tensions = tensions.data();
   section.stretch = stretch.data();
   section.directions = directions.data();
   evaluate_tendons(section, plain(u), plain(v));

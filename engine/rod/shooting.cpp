@@ -329,10 +329,19 @@ RodResidual ShootingRod::evaluate(const Port& base, const Port& tip) {
   add(tip_.value(state, tip, loose) - tip_gap_);
   if (touch_) contact_residual(r, row);
   if (finds_tensions())
-    for (double gap : tendons_->gaps())
+    for (double gap : tendon_gaps())
       add_row(r, gap, row++);
   evaluated_ = r.finite;
   return r;
+}
+
+std::vector<Track*> ShootingRod::tracks() {
+  std::vector<Track*> all{&track_};
+  if (tendons_) all.push_back(tendons_->track());
+  if (options_.rotary_inertia) all.push_back(&rotation_track_);
+  if (touch_ && touch_->motion.friction()) all.push_back(touch_->motion.turns());
+  if (disks_ && disks_->turns()) all.push_back(disks_->turns());
+  return all;
 }
 
 std::string ShootingRod::row_name(int row) const {
@@ -350,7 +359,7 @@ std::string ShootingRod::row_name(int row) const {
   }
   row -= law;
   if (row < 6) return std::string("tip of ") + name_ + ", " + tip_.row_name(row);
-  if (row >= 6 + 3 * static_cast<int>(contact_count())) return "length of a tendon of " + name_;
+  if (row >= 6 + 3 * static_cast<int>(contact_count())) return "tendons of " + name_;
   return "contact " + std::to_string((row - 6) / 3 + 1) + " of " + name_;
 }
 

@@ -95,6 +95,10 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
     return tendons_ ? tendons_->observe() : std::vector<TendonSample>();
   }
 
+  void engage_friction() override {
+    if (tendons_) tendons_->engage_friction();
+  }
+
   RodField field() const override;
   RodEnergy energy() const override;
   double magnetic_energy(const MagneticSources& field) const override;
@@ -160,9 +164,14 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   void list_sections();
   void update_stage_inputs();
   void place_tendons();
+  const VecX& tendon_gaps();
+
+  Eigen::Index freedoms() const override { return 6; }
+
   bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
   VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
   void find_direction(const Vec6& z, const Vec6& zeta_A);
+  VecX found_direction() const;
   void take_direction(const VecX& direction);
   void add_tension(Eigen::Index unknown, bool add) override;
   std::vector<Vec6> strain_rates(const VecX& direction) const override;

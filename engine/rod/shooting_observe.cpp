@@ -71,15 +71,8 @@ void ShootingRod::mark_positions() {
     marked_[j] = vec(stages_[j].p);
 }
 
-std::vector<Track*> ShootingRod::tracks() {
-  std::vector<Track*> all{&track_};
-  if (options_.rotary_inertia) all.push_back(&rotation_track_);
-  if (touch_ && touch_->motion.friction()) all.push_back(touch_->motion.turns());
-  if (disks_ && disks_->turns()) all.push_back(disks_->turns());
-  return all;
-}
-
 void ShootingRod::fill_tracks() {
+  if (tendons_) tendons_->fill_track();
   if (touch_) touch_->motion.fill_turns(nodes_, rates_);
   if (disks_) disks_->fill_turns();
   Eigen::Index i = 0;
@@ -109,6 +102,7 @@ void ShootingRod::fill_tracks() {
 
 void ShootingRod::accept_tracks() {
   accept_contacts();
+  if (tendons_) tendons_->accept();
   if (disks_) disks_->accept();
   if (!options_.rotary_inertia) return;
   for (std::size_t j = 0; j < stages_.size(); ++j)
@@ -117,6 +111,7 @@ void ShootingRod::accept_tracks() {
 
 void ShootingRod::start_tracks() {
   accept_tracks();
+  if (tendons_) tendons_->start_track();
   if (disks_) disks_->start();
   for (CellStage& stage : stages_) {
     std::fill_n(stage.theta, 3, 0.0);
@@ -135,6 +130,7 @@ void ShootingRod::start_tracks() {
 // cell's start.
 void ShootingRod::start_tracks_moving() {
   start_tracks();
+  if (tendons_) tendons_->start_track_moving(strain_rates(found_direction()));
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto n = static_cast<Eigen::Index>(stages_.size());

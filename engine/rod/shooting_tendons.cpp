@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/math/so3.h"
+#include "engine/rod/arc_grid.h"
 #include "engine/rod/shooting.h"
 
 namespace cprsim {
@@ -23,12 +24,23 @@ void ShootingRod::place_tendons() {
       sections.push_back({s, from + 0.5 * h, h * table_->b[j], rest_curvature(s)});
     }
   tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.K_bt.head<2>().maxCoeff());
+                                          section_.K_bt.head<2>().maxCoeff(),
+                                          all_stations(options_.stations, options_.along.get()));
+}
+
+const VecX& ShootingRod::tendon_gaps() {
+  for (std::size_t j = 0; tendons_->rub() && j < stages_.size(); ++j)
+    tendons_->set_curvature(j, vector_at(stages_[j].u));
+  return tendons_->gaps();
 }
 
 // Starts of segments, lifted unknowns, contact forces.
 VecX ShootingRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
   find_direction(z, zeta_A);
+  return found_direction();
+}
+
+VecX ShootingRod::found_direction() const {
   const auto starts = static_cast<Eigen::Index>(12 * start_direction_.size()),
              lifted = static_cast<Eigen::Index>(lifted_direction_.size());
   VecX all(starts + lifted + 3 * static_cast<Eigen::Index>(contact_count()));
@@ -64,7 +76,7 @@ void ShootingRod::add_tension(Eigen::Index unknown, bool add) {
   kept_stages_ = stages_;
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const CellSection& at = coefficients_at(j);
-    const Vec6 Lambda = tendons_->per_tension(unknown, j);
+    const Vec6 Lambda = tendons_->per_unknown(unknown, j);
     for (int i = 0; i < 3; ++i) {
       stages_[j].residual_u[i] += at.C_bt[i] * Lambda[i];
       stages_[j].residual_v[i] += at.C_se[i] * Lambda[3 + i];

@@ -365,7 +365,7 @@ RodResidual StrainRod::evaluate(const Port& base, const Port& tip) {
   section_evaluations_ += static_cast<long>(points_.size());
   add(law_residual_ / noise_);
   add(tip_.value(state, tip, loose) - tip_gap_);
-  if (finds_tensions()) add(tendons_->gaps());
+  if (finds_tensions()) add(tendon_gaps());
   evaluated_ = r.finite;
   return r;
 }
@@ -374,7 +374,7 @@ std::string StrainRod::row_name(int row) const {
   const int d = static_cast<int>(space_.freedoms()), law = static_cast<int>(strain_unknowns());
   if (row < d) return "base of " + name_ + ", " + base_.row_name(row);
   row -= d;
-  if (row >= law + d) return "length of a tendon of " + name_;
+  if (row >= law + d) return "tendons of " + name_;
   if (row >= law) return "tip of " + name_ + ", " + tip_.row_name(row - law);
   const int functions = static_cast<int>(rule_.functions());
   const int element = row / functions / static_cast<int>(free_modes_.size());

@@ -30,6 +30,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/rod/effect_part.h"
 #include "engine/rod/end_condition.h"
 #include "engine/rod/immersion.h"
 #include "engine/rod/nodal_contacts.h"
@@ -112,6 +113,10 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
 
   std::vector<TendonSample> tendons() const override {
     return tendons_ ? tendons_->observe() : std::vector<TendonSample>();
+  }
+
+  void engage_friction() override {
+    if (tendons_) tendons_->engage_friction();
   }
 
   RodField field() const override;
@@ -212,6 +217,10 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
   void evaluate_element(std::size_t element, NodeState& state);
   void project_law(std::size_t element);
   void place_tendons();
+  const VecX& tendon_gaps();
+
+  Eigen::Index freedoms() const override { return space_.freedoms(); }
+
   bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
   VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
   void add_tension(Eigen::Index unknown, bool add) override;
@@ -308,10 +317,10 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
   std::vector<Rotary> rotary_;  ///< empty without the effect
   bool turning_ = false;        ///< rotary inertia acts now
 
-  std::unique_ptr<RodTendons> tendons_;  ///< sections: points
+  EffectPart<RodTendons> tendons_;  ///< sections: points
   TendonBorder border_;
   VecX tension_direction_, kept_residual_;
-  std::unique_ptr<RodDisks> disks_;  ///< null: none
+  EffectPart<RodDisks> disks_;  ///< null: none
 
   /// What a sweep writes along one element, kept so that it need not ask for memory.
   struct Scratch {
@@ -334,7 +343,7 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
 
   Track track_;  ///< positions of points and borders, q if damped
   Track rotation_track_{Track::Kind::kRotation};
-  std::unique_ptr<NodalContacts> touch_;  ///< of a rod that may touch something
+  EffectPart<NodalContacts> touch_;  ///< of a rod that may touch something
   long section_evaluations_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The law of the sections and its modes, whether they vary along the rod or not.
+#include "engine/rod/arc_grid.h"
 #include "engine/rod/strain_basis.h"
 
 namespace cprsim {
@@ -13,7 +14,14 @@ void StrainRod::place_tendons() {
                           rest_curvature(e, rule_.phi.col(i))});
     }
   tendons_ = std::make_unique<RodTendons>(options_.tendons, forcing_.length, sections,
-                                          section_.K_bt.head<2>().maxCoeff());
+                                          section_.K_bt.head<2>().maxCoeff(),
+                                          all_stations(options_.stations, options_.along.get()));
+}
+
+const VecX& StrainRod::tendon_gaps() {
+  for (std::size_t j = 0; tendons_->rub() && j < points_.size(); ++j)
+    tendons_->set_curvature(j, points_[j].u);
+  return tendons_->gaps();
 }
 
 void StrainRod::list_sections() {

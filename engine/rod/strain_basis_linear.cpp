@@ -224,7 +224,7 @@ void StrainRod::add_tension(Eigen::Index unknown, bool add) {
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const std::size_t e = j / static_cast<std::size_t>(rule_.points());
     const auto i = static_cast<Eigen::Index>(j % static_cast<std::size_t>(rule_.points()));
-    const Vec6 Lambda = tendons_->per_tension(unknown, j);
+    const Vec6 Lambda = tendons_->per_unknown(unknown, j);
     for (std::size_t f = 0; f < free_modes_.size(); ++f) {
       const StrainMode& mode = modes_[free_modes_[f]];
       const double along = mode.axis.dot(Lambda.segment<3>(mode.turns ? 0 : 3));

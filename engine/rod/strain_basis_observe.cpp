@@ -62,6 +62,7 @@ void StrainRod::mark_positions() {
 
 std::vector<Track*> StrainRod::tracks() {
   std::vector<Track*> all{&track_};
+  if (tendons_) all.push_back(tendons_->track());
   if (options_.rotary_inertia) all.push_back(&rotation_track_);
   if (touch_ && touch_->turns()) all.push_back(touch_->turns());
   if (disks_ && disks_->turns()) all.push_back(disks_->turns());
@@ -69,6 +70,7 @@ std::vector<Track*> StrainRod::tracks() {
 }
 
 void StrainRod::fill_tracks() {
+  if (tendons_) tendons_->fill_track();
   if (touch_) touch_->fill_turns();
   double* x = track_.x.data();
   for (const StrainPoint& point : points_)
@@ -92,6 +94,7 @@ void StrainRod::fill_tracks() {
 
 void StrainRod::accept_tracks() {
   if (touch_) touch_->accept_contacts();
+  if (tendons_) tendons_->accept();
   for (std::size_t j = 0; j < rotary_.size(); ++j)
     Eigen::Map<RowMatrix>(rotary_[j].R_start) = points_[j].R;
   if (disks_) disks_->accept();
@@ -99,6 +102,7 @@ void StrainRod::accept_tracks() {
 
 void StrainRod::start_tracks() {
   accept_tracks();
+  if (tendons_) tendons_->start_track();
   for (Rotary& rotary : rotary_) {
     std::fill_n(rotary.theta, 3, 0.0);
     std::fill_n(rotary.omega, 3, 0.0);
@@ -114,6 +118,7 @@ void StrainRod::start_tracks() {
 // The direction taken as a velocity, through the variational equations that gave it.
 void StrainRod::start_tracks_moving() {
   start_tracks();
+  if (tendons_) tendons_->start_track_moving(strain_rates(direction_));
   VecX v = VecX::Zero(track_.x.size());
   const VecX moving = direction_with_forces();
   Eigen::Index at = 0;

@@ -85,6 +85,18 @@ double rotary_number(const RodSpec& spec, const SectionProperties& s, double mas
   return inertia / (mass * L * L);
 }
 
+/// Of what moves when a loose rod rolls on friction, the part that turns: 1/3 of a round solid one.
+double rolling_number(const Robot& robot, const RobotRod& rod, double mass, double L) {
+  const Scene& scene = *robot.scene;
+  const bool rolls =
+      !rod.base_held && !rod.tip_held && scene.effects.has(Effect::kFriction) &&
+      (scene.effects.has(Effect::kContact) || scene.effects.has(Effect::kSelfContact)) &&
+      scene.simulation.mode == Mode::kDynamic;
+  if (!rolls || mass <= 0) return 0;
+  const double inertia = rod.section.rhoJ.z() * L, r = rod.section.half_width;
+  return inertia / (inertia + mass * r * r);
+}
+
 RodFacts rod_facts(const Robot& robot, const RobotRod& rod, const StepPlan& plan) {
   const Scene& scene = *robot.scene;
   RodFacts f;
@@ -129,6 +141,7 @@ RodFacts rod_facts(const Robot& robot, const RobotRod& rod, const StepPlan& plan
   f.shear_number = s.K_se.x() > 0 ? EI / (s.K_se.x() * L * L) : 0;
   f.extension_number = s.K_se.z() > 0 ? EI / (s.K_se.z() * L * L) : 0;
   f.rotary_number = rotary_number(*rod.spec, s, f.mass, L);
+  f.rolling_number = rolling_number(robot, rod, f.mass, L);
   f.damping_ratio = omega * std::max(s.B_bt.x(), s.B_bt.y()) / (2 * EI);
   if (rod.spec->drag) f.drag_number = drag_number(*rod.spec, s, scene, L);
   if (!rod.spec->magnets.empty())

@@ -262,14 +262,64 @@ std::vector<std::vector<TendonSample>> EnergyLedger::tendons_now(double t, bool 
   return now;
 }
 
-double EnergyLedger::tendon_work(double t) const {
+namespace {
+
+/// A function of time over a step of length 1: its values and its slopes where it begins and ends.
+struct Course {
+  double from, to, slope_from, slope_to;
+
+  double value(double x) const {
+    const double y = 1 - x;
+    return y * y * ((1 + 2 * x) * from + x * slope_from) +
+           x * x * ((1 + 2 * y) * to - y * slope_to);
+  }
+
+  double slope(double x) const {
+    return 6 * x * (1 - x) * (to - from) + (1 - x) * (1 - 3 * x) * slope_from +
+           x * (3 * x - 2) * slope_to;
+  }
+};
+
+/// Of a tension over a displacement, both cubic in time.
+double work_of(const Course& tension, const Course& displacement) {
+  constexpr double kAside = 0.3872983346207417;  // sqrt(3 / 20): Gauss, exact to the fifth degree
+  double work = 8. / 18 * tension.value(0.5) * displacement.slope(0.5);
+  for (const double x : {0.5 - kAside, 0.5 + kAside})
+    work += 5. / 18 * tension.value(x) * displacement.slope(x);
+  return work;
+}
+
+}  // namespace
+
+// Trapezoidal in the displacement where nothing has a rate or a tension is found; otherwise by the
+// rates at both ends, of higher order than the schemes.
+EnergyLedger::TendonWork EnergyLedger::tendon_work(double t) const {
   const std::vector<std::vector<TendonSample>> now = tendons_now(t, true);
-  double work = 0;
-  for (std::size_t i = 0; i < now.size(); ++i)
-    for (std::size_t k = 0; k < now[i].size(); ++k) {
+  const bool moves = robot_.scene->simulation.mode == Mode::kDynamic;
+  TendonWork work;
+  std::size_t i = 0;
+  for (const RobotRod& rod : robot_.rods) {
+    if (rod.tendons.empty()) continue;
+    for (std::size_t k = 0; k < rod.tendons.size(); ++k) {
       const TendonSample &a = tendons_before_[i][k], &b = now[i][k];
-      work += 0.5 * (a.tension + b.tension) * (b.displacement - a.displacement);
+      double motor = 0.5 * (a.tension + b.tension) * (b.displacement - a.displacement);
+      const DriveSpec* drive = rod.tendons[k].drive;
+      if (moves && drive && drive->quantity == DriveQuantity::kTension) {
+        const double h = t - begun_;
+        motor = work_of({a.tension, b.tension, h * drive->profile.evaluate(begun_).rate,
+                         h * drive->profile.evaluate(t, true).rate},
+                        {a.displacement, b.displacement, h * a.rate, h * b.rate});
+      }
+      work.motors += motor;
+      if (b.along.empty()) continue;
+      // what of it reaches the rod, section by section
+      work.friction += motor;
+      for (std::size_t j = 0; j < b.along.size(); ++j)
+        work.friction -= 0.5 * (a.tension * a.along[j].x() + b.tension * b.along[j].x()) *
+                         (b.along[j].y() - a.along[j].y());
     }
+    ++i;
+  }
   return work;
 }
 
@@ -307,8 +357,9 @@ void EnergyLedger::close_step(double t, double damping_loss, double drive_work, 
     if (!a.moment.isZero() || !b.moment.isZero())
       sample_.work += 0.5 * (a.moment + b.moment).dot(log_so3(b.rotation * a.rotation.transpose()));
   }
-  sample_.work += drive_work + tendon_work(t) + course_work(t);
-  sample_.dissipated += damping_loss;
+  const TendonWork tendons = tendon_work(t);
+  sample_.work += drive_work + tendons.motors + course_work(t);
+  sample_.dissipated += damping_loss + tendons.friction;
   // what friction takes, less what its elastic range still holds
   for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
     const Joint& joint = robot_.joints[j];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where energy comes from and goes: kinetic, elastic and potential energy of everything, the work
-// of loads and tendons (trapezoidal in the displacement, which is exact for dead loads and constant
-// tensions), of magnetic fields and temperatures that change (trapezoidal in the change) and of the
-// other drives (their power, by the time scheme's own quadrature), and what damping has taken out.
+// of loads (trapezoidal in the displacement, which is exact for dead loads), of magnetic fields and
+// temperatures that change (trapezoidal in the change) and of the other drives (their power, by the
+// time scheme's own quadrature), and what damping has taken out.
 #pragma once
 
 #include <vector>
@@ -73,7 +73,15 @@ class EnergyLedger {
   double joint_effort(const JointDrive& drive, double t, bool before) const;
 
   std::vector<std::vector<TendonSample>> tendons_now(double t, bool before) const;
-  double tendon_work(double t) const;
+
+  /// What tendons have exchanged since begin_step, trapezoidal in the displacement: where nothing
+  /// has a rate.
+  struct TendonWork {
+    double motors = 0;    ///< put in
+    double friction = 0;  ///< taken out
+  };
+
+  TendonWork tendon_work(double t) const;
 
   /// What a rod's energy depends on beside its state, and its derivatives by that.
   struct OnCourse {

@@ -18,6 +18,9 @@ constexpr double kLargestWeights =
 // of lengths and of a radian: less is round-off
 constexpr double kRoundTolerance = 1e-11;
 
+// Between stick and slip Newton's method goes from kink to kink.
+constexpr int kTouchingPatience = 3;
+
 /// Lagrange weights of the given times at t.
 std::vector<double> lagrange(const std::vector<double>& times, double t) {
   std::vector<double> w(times.size(), 1);
@@ -87,12 +90,19 @@ void Marcher::predict(double time) {
   if (!past_.empty()) equations_.set_unknowns(past_.back().unknowns);
 }
 
+SolveOptions Marcher::patient() const {
+  SolveOptions options = options_;
+  if (contacts_.any() && contacts_.touching()) options.max_iterations *= kTouchingPatience;
+  return options;
+}
+
 // Newton from the prediction; failing that, from where the step began, where rods touch also with
 // full steps, and with what slips held; failing that, Levenberg-Marquardt.
 SolveReport Marcher::solve_once(double time) {
   predict(time);
-  contacts_.refresh();
-  SolveReport report = newton(equations_, options_);
+  if (contacts_.any()) contacts_.refresh();
+  const SolveOptions patient = this->patient();
+  SolveReport report = newton(equations_, patient);
   const auto again = [&](SolveReport (*solve)(Problem&, const SolveOptions&),
                          const SolveOptions& options) {
     const int spent = report.iterations;
@@ -101,14 +111,14 @@ SolveReport Marcher::solve_once(double time) {
   };
   const auto set_out = [&] {
     equations_.set_unknowns(start_);
-    contacts_.refresh();
+    if (contacts_.any()) contacts_.refresh();
   };
   if (report.converged()) return report;
   set_out();
-  again(newton, options_);
+  again(newton, patient);
   if (!report.converged() && contacts_.touching()) {
     set_out();
-    if (contacts_.ease()) again(newton, options_);
+    if (contacts_.ease()) again(newton, patient);
     if (report.converged()) return report;
     SolveOptions bold = options_;
     bold.bold = true;
@@ -117,7 +127,7 @@ SolveReport Marcher::solve_once(double time) {
     again(newton, bold);
     if (report.converged()) return report;
     set_out();
-    if (contacts_.hold()) again(newton, options_);
+    if (contacts_.hold()) again(newton, patient);
   }
   if (report.converged()) return report;
   set_out();
@@ -127,7 +137,7 @@ SolveReport Marcher::solve_once(double time) {
 
 SolveReport Marcher::solve_stage(double time) {
   const SolveReport first = solve_once(time);
-  return contacts_.any() ? settle_contacts(contacts_, equations_, options_, first) : first;
+  return contacts_.any() ? settle_contacts(contacts_, equations_, patient(), first) : first;
 }
 
 void Marcher::fill_tracks() {

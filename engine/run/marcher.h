@@ -76,6 +76,7 @@ class Marcher {
   };
 
   void predict(double time);
+  SolveOptions patient() const;
   SolveReport solve_stage(double time);
   SolveReport solve_once(double time);
   double error_estimate() const;

@@ -264,8 +264,8 @@ Snapshot interpolate(const Snapshot& a, const Snapshot& b, double t) {
   }
   for (std::size_t i = 0; i < b.tendons.size(); ++i) {
     const TendonSample &from = a.tendons.at(i), &to = b.tendons[i];
-    result.tendons.push_back(
-        {at(from.tension, to.tension), at(from.displacement, to.displacement)});
+    result.tendons.push_back({at(from.tension, to.tension), at(from.displacement, to.displacement),
+                              at(from.end_tension, to.end_tension)});
   }
   result.energy = energy_between(a.energy, b.energy, at);
   // counts belong to the step that ends at b
@@ -305,6 +305,7 @@ double evaluate(const Channel& channel, const Scene& scene, const Snapshot& snap
       return value_of(channel, snapshot.rods.at(index));
     case ChannelEntity::kTendon: {
       const TendonSample& tendon = snapshot.tendons.at(index);
+      if (channel.quantity == Quantity::kEndTension) return tendon.end_tension;
       return channel.quantity == Quantity::kTension ? tendon.tension : tendon.displacement;
     }
     case ChannelEntity::kEnergy:

@@ -64,9 +64,12 @@ bool Simulation::Parts::start(const RobotUnknowns* neighbour) {
 void Simulation::Parts::begin() {
   if (!free_only()) start_motion();
   // equilibria at the start know no friction: which of many would it be?
-  if (scene.simulation.mode != Mode::kStatic)
+  if (scene.simulation.mode != Mode::kStatic) {
     for (Joint& joint : robot.joints)
       joint.engage_friction();
+    for (RobotRod& rod : robot.rods)
+      rod.model->engage_friction();
+  }
   statistics.start_iterations = std::exchange(statistics.iterations, 0);
   statistics.max_iterations = 0;
   ledger.open();

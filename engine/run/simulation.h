@@ -68,6 +68,7 @@ struct RodFacts {
          damping_ratio = 0;
   /// Of a fluid, a magnetic field, heat that the scene describes, listed or not.
   double drag_number = 0, magnetic_number = 0, thermal_number = 0;
+  double rolling_number = 0;  ///< of what moves when it rolls, the part that turns; 0: it does not
 };
 
 struct ProblemFacts {

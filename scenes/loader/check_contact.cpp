@@ -33,9 +33,12 @@ class ContactCheck {
             may_touch(scene.rods[a].surface, scene.rods[b].surface))
           obstacles_ = true;
     if (!obstacles_) return;
-    if (scene.planar_normal)
-      complain(scene.simulation.place, 19, "contact of rods is not available in a <planar> scene",
-               "leave <planar> out");
+    if (scene.planar_normal) {
+      r_.scene.planar_normal.reset();
+      r_.report.at(Severity::kNote, "W592", scene.simulation.place, 19,
+                   "what touches is solved in space: <planar> makes nothing cheaper here, and what "
+                   "is not symmetric about the plane may be pushed out of it");
+    }
     for (const RodSpec& rod : scene.rods)
       if ((touches(rod) || touches_itself(rod)) && rod.sections.size() > 1)
         complain(rod.place, kRodCaret,

@@ -27,7 +27,7 @@ class PlanarCheck {
     for (const LoadSpec& load : scene_.loads)
       check(load);
     for (std::size_t k = 0; k < scene_.tendons.size(); ++k)
-      check(scene_.tendons[k], static_cast<int>(k));
+      check(scene_.tendons[k]);
     for (const MagneticFieldSpec& field : scene_.magnetic_fields)
       check(field);
     velocities();
@@ -193,33 +193,15 @@ class PlanarCheck {
       complain(load.place, 11, "the torque " + words(T) + " N m is not about the plane's normal");
   }
 
-  /// As choose_method() will decide: left to the program it is another where shooting cannot.
-  bool by_shooting(const RodSpec& rod) const {
-    const SolverSpec& solver = scene_.solver;
-    const Method method = rod.method.value_or(solver.method);
-    return method == Method::kShooting ||
-           (method == Method::kAuto && (solver.points || solver.integrator));
-  }
-
-  void check(const TendonSpec& tendon, int index) {
+  void check(const TendonSpec& tendon) {
     const RodSpec& rod = scene_.rods[at(tendon.rod)];
     const std::string name = "tendon '" + tendon.name + "'";
-    if (by_shooting(rod))
-      complain(tendon.place, 14,
-               name + " is along rod '" + rod.name + "', by shooting, which knows none in a plane",
-               "leave <planar> out, or take method=\"strain\" or \"collocation\"");
     for (const double s : {0., 0.25, 0.5, 0.75, 1.}) {
       const Vec2 r = tendon_offset(tendon, s, s).r;
       if (!leaves(axes_of(rod) * Vec3(r.x(), r.y(), 0))) continue;
       complain(tendon.place, 14, name + " runs beside the plane that its rod stays in");
       break;
     }
-    for (const DriveSpec& drive : scene_.drives)
-      if (drive.tendon == index && drive.quantity == DriveQuantity::kDisplacement)
-        r_.report
-            .at(Severity::kError, "E520", drive.place, 13,
-                "a tendon of given displacement in a planar scene is not available in this version")
-            .suggestion = "leave <planar> out, or drive the tension";
   }
 
   void check_law(const LoadSpec& load) {

@@ -88,8 +88,8 @@ void read_world(Reading& reading, const Node& world) {
   check_fields(reading, world);
   check_tendons(reading);
   check_ties(reading);
-  check_contact(reading);
   check_planar(reading, world);
+  check_contact(reading);
   read_outputs(reading, world);
 }
 

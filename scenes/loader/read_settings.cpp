@@ -216,10 +216,6 @@ void override_effects(Reading& r) {
         const auto effect = static_cast<Effect>(k);
         if (word != effect_name(effect)) continue;
         known = true;
-        const bool later = effect == Effect::kTendonFriction;
-        if (later && on)
-          r.report.at(Severity::kError, "E520", {}, 0,
-                      option + word + ": not available in this version");
         r.scene.effects.set(effect, on, r.scene.effects.asked_at[static_cast<std::size_t>(k)]);
       }
       if (known) continue;

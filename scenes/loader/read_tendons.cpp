@@ -84,6 +84,8 @@ void read_tendon(Reading& r, const Node& node, int scope) {
       r.report.bad_value("E306", *termination, *termination->attribute("s"),
                          "a tendon ends at a fraction of the length, above 0 and at most 1");
   }
+  if (const Node* friction = node.child("friction"))
+    tendon.friction = number_attribute(*friction, "mu", 0);
   read_route(r, node, tendon);
   r.scene.tendons.push_back(std::move(tendon));
 }
@@ -106,31 +108,56 @@ void read_tendons(Reading& r) {
   });
 }
 
+bool rubs(const Scene& scene, const TendonSpec& tendon) {
+  return tendon.friction > 0 && tendon.rod >= 0 && scene.effects.has(Effect::kTendonFriction) &&
+         !scene.rods[at(tendon.rod)].lacks("tendon_friction");
+}
+
 // What a contact's force does to a tension that is itself unknown is not worked out.
-void check_displaced(Reading& r, const TendonSpec& tendon, const DriveSpec& drive) {
-  if (drive.quantity != DriveQuantity::kDisplacement || tendon.rod < 0) return;
+void check_found(Reading& r, const TendonSpec& tendon, const DriveSpec& drive) {
+  const bool displaced = drive.quantity == DriveQuantity::kDisplacement;
+  if (tendon.rod < 0 || (!displaced && !rubs(r.scene, tendon))) return;
   const RodSpec& rod = r.scene.rods[at(tendon.rod)];
   const Effects& effects = r.scene.effects;
   if ((effects.has(Effect::kContact) && !rod.lacks("contact")) ||
       (effects.has(Effect::kSelfContact) && !rod.lacks("self_contact")))
     r.report
         .at(Severity::kError, "E520", drive.place, 13,
-            "a tendon of given displacement along a rod that may touch something is not available "
-            "in this version")
+            std::string("a tendon ") + (displaced ? "of given displacement" : "with friction") +
+                " along a rod that may touch something is not available in this version")
         .suggestion =
-        "give the rod <without>contact</without> (self_contact too, if the scene lists it), or "
-        "drive the tension";
+        std::string(
+            "give the rod <without>contact</without> (self_contact too, if the scene lists "
+            "it), or ") +
+        (displaced ? "drive the tension" : "leave friction out");
+}
+
+// That the effect and its data are both there.
+void check_friction(Reading& r) {
+  const bool listed = r.scene.effects.has(Effect::kTendonFriction);
+  bool any = false;
+  for (const TendonSpec& tendon : r.scene.tendons) {
+    any = any || tendon.friction > 0;
+    if (tendon.friction > 0 && !listed)
+      r.report.at(Severity::kNote, "W511", tendon.place, 14,
+                  "tendon '" + tendon.name + "' has <friction>, tendon_friction is not listed");
+  }
+  if (listed && !any && !r.report.failed())
+    r.report.at(Severity::kWarning, "W503",
+                r.scene.effects.asked_at[static_cast<std::size_t>(Effect::kTendonFriction)], 15,
+                "tendon_friction is listed and no tendon has <friction>");
 }
 
 // A rod that is fed carries other parts of a tendon through its base, and a tendon that nothing
 // pulls is a mistake rather than a slack one.
 void check_tendons(Reading& r) {
+  check_friction(r);
   for (std::size_t k = 0; k < r.scene.tendons.size(); ++k) {
     const TendonSpec& tendon = r.scene.tendons[k];
     bool driven = false;
     for (const DriveSpec& drive : r.scene.drives) {
       driven = driven || drive.tendon == static_cast<int>(k);
-      if (drive.tendon == static_cast<int>(k)) check_displaced(r, tendon, drive);
+      if (drive.tendon == static_cast<int>(k)) check_found(r, tendon, drive);
       if (drive.quantity == DriveQuantity::kLength && drive.rod == tendon.rod)
         r.report.at(Severity::kError, "E520", tendon.place, 14,
                     "a tendon along a rod whose length is driven is not available in this version");

@@ -59,6 +59,12 @@ std::string obstacle(const Reading& r, int index, std::string& hint) {
       return "a tendon of given displacement along a tied rod, as " + whose;
     }
   }
+  if (effects.has(Effect::kTendonFriction) && !rod.lacks("tendon_friction"))
+    for (const TendonSpec& tendon : scene.tendons)
+      if (tendon.rod == index && tendon.friction > 0) {
+        hint = "give the rod <without>tendon_friction</without>";
+        return "a tendon with friction along a tied rod, as " + whose;
+      }
   return {};
 }
 

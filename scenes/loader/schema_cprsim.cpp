@@ -130,8 +130,8 @@ std::vector<ElementRule> rod_elements() {
        "between."},
       {"cprsim:tendon", "termination", "", T::kEmpty, "", '?', S::kSupported,
        "Where it is fastened; the rod's tip if absent."},
-      {"cprsim:tendon", "friction", "tendon_mu", T::kAny, "available: tendons without friction",
-       '?', S::kLater, "Friction along it."},
+      {"cprsim:tendon", "friction", "tendon_mu", T::kEmpty, "", '?', S::kSupported,
+       "Against its channel, with the effect tendon_friction."},
   };
 }
 
@@ -173,7 +173,8 @@ std::vector<ElementRule> run_elements() {
        "Torque and force of <cprsim:magnetic_field> on rods that have a <magnetization>."},
       {kEffects, "thermal", "effect", T::kEmpty, "", '?', S::kSupported,
        "Rods that have a <temperature> grow longer and bend."},
-      {kEffects, "tendon_friction", "effect", T::kEmpty, "", '?', S::kLater, "Of tendons."},
+      {kEffects, "tendon_friction", "effect", T::kEmpty, "", '?', S::kSupported,
+       "Of tendons against their channels: docs/tendons.md."},
       {"physics", "cprsim:solver", "", T::kGroup, "", '?', S::kSupported,
        "How the rods are solved."},
       {"cprsim:solver", "accuracy", "", T::kPositive, "m", '?', S::kSupported,

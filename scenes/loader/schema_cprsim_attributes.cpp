@@ -122,6 +122,8 @@ std::vector<AttributeRule> cprsim_attributes() {
       {"helical", "turns", T::kNumber, "1", true, yes,
        "From base to tip; positive: a right-handed screw."},
       {"termination", "s", T::kNonNegative, "1", true, yes, "Fraction of the length."},
+      {"tendon_mu", "mu", T::kNonNegative, "1", true, yes,
+       "Coefficient: the tension falls by exp(-mu angle) where the tendon turns by an angle."},
       {"cprsim:drive cprsim:load cprsim:magnetic_field rod_temperature", "profile", T::kRef, "",
        false, yes, "A cprsim:profile."},
       {"magnetization", "from", T::kNonNegative, "1", false, yes, "Fraction; 0 if absent."},

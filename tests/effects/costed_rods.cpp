@@ -101,6 +101,11 @@ std::vector<RodCase> costed_cases() {
              load.follower = true;
            }},
           {"tendon", false, [](Scene& scene) { add_tendon(scene, 8e-3, 0, 1); }},
+          {"tendon friction", false,
+           [](Scene& scene) {
+             switch_on(scene, {Effect::kTendonFriction});
+             add_tendon(scene, 8e-3, 0, 1).friction = 0.2;
+           }},
           {"varying sections", false, taper},
           {"magnetic, uniform field", false, magnetize_uniformly},
           {"magnetic, dipole", false, magnetize_by_dipole},

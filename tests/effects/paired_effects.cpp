@@ -59,6 +59,18 @@ void add_wound_tendon(Scene& scene, double share) {
   add_tendon(scene, 0.03, 0.4, 0.4 * share, 0.3);
 }
 
+// holds the first millimetres of the side that is pulled apart; pulled in a little, so that it is
+// taut
+void add_displaced_tendon(Scene& scene, double) {
+  add_tendon(scene, 0.03, std::numbers::pi, 0).termination = 0.05;
+  displace(scene, 2e-4);
+}
+
+void add_rubbing_tendon(Scene& scene, double share) {
+  switch_on(scene, {Effect::kTendonFriction});
+  add_tendon(scene, 0.03, 0, 0.4 * share).friction = 0.4;
+}
+
 void add_taper(Scene& scene, double share) {
   SectionSpec thick = scene.rods[0].section, thin = thick;
   thin.s = 1;
@@ -126,6 +138,11 @@ void add_sprung_base(Scene& scene, double share) {
   scene.rods[0].base.at.body = index;
 }
 
+void add_rubbing_base(Scene& scene, double share) {
+  add_sprung_base(scene, share);
+  scene.joints.back().friction = 0.03;
+}
+
 }  // namespace
 
 std::vector<PairedEffect> paired_effects() {
@@ -138,13 +155,23 @@ std::vector<PairedEffect> paired_effects() {
           {.name = "load along it", .add = add_line_load, .length_stays = false},
           {.name = "follower", .add = add_follower},
           {.name = "tendon", .add = add_wound_tendon, .in_plane = false, .length_stays = false},
+          {.name = "tendon of given length",
+           .add = add_displaced_tendon,
+           .length_stays = false,
+           .touches = false,
+           .constrains = true},
+          {.name = "tendon that rubs",
+           .add = add_rubbing_tendon,
+           .length_stays = false,
+           .touches = false},
           {.name = "taper", .add = add_taper, .in_plane = false},
           {.name = "magnetic", .add = add_magnet, .length_stays = false},
           {.name = "thermal", .add = add_heat, .in_plane = false},
           {.name = "disks", .add = add_disks, .length_stays = false},
           {.name = "rest curvature", .add = add_rest_curvature, .in_plane = false},
           {.name = "feed", .add = add_feed},
-          {.name = "sprung base", .add = add_sprung_base}};
+          {.name = "sprung base", .add = add_sprung_base, .at_base = true},
+          {.name = "sprung base that rubs", .add = add_rubbing_base, .at_base = true}};
 }
 
 Scene rod_for_pairs(bool moves) {
@@ -172,7 +199,7 @@ Scene rod_for_pairs(bool moves) {
 
 bool may_be_combined(const PairedEffect& a, const PairedEffect& b) {
   const auto fed = [](const PairedEffect& e) { return std::string(e.name) == "feed"; };
-  return !(fed(a) && !b.length_stays) && !(fed(b) && !a.length_stays);
+  return !(fed(a) && !b.length_stays) && !(fed(b) && !a.length_stays) && !(a.at_base && b.at_base);
 }
 
 }  // namespace cprsim

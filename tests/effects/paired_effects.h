@@ -18,6 +18,9 @@ struct PairedEffect {
   bool whole = false;        ///< comes with its full amplitude only
   bool in_plane = true;      ///< may be asked for with <planar normal="0 1 0">
   bool length_stays = true;  ///< a length drive does not exclude it
+  bool touches = true;       ///< contact does not exclude it
+  bool constrains = false;   ///< has no share, and changes what others do by much
+  bool at_base = false;      ///< puts something in the place of the clamp
 };
 
 /// Every effect that changes the answer by a few hundredths of the length at its full amplitude.

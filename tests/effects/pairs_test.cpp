@@ -122,6 +122,7 @@ TEST_P(PairsOfEffects, AddUpToTheProductOfBoth) {
   for (const Method method : kEveryMethod) {
     const Answer x = answer(method, {});
     for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+      if (a.constrains || b.constrains) return;
       SCOPED_TRACE(method_name(method));
       const auto product = [&](double share) {
         const double of_a = a.whole ? 1 : share, of_b = b.whole ? 1 : share;
@@ -142,19 +143,22 @@ TEST_P(PairsOfEffects, AddUpToTheProductOfBoth) {
       EXPECT_GT(quotient, 3.5) << D;
     });
   }
-  EXPECT_GT(pairs, 3 * (moving() ? 110 : 80));
+  EXPECT_GT(pairs, 3 * (moving() ? 140 : 110));
   std::printf("%d pairs, half of both leaves at most 1/%.2f of what they do to each other\n", pairs,
               least);
 }
 
 TEST_P(PairsOfEffects, AreTheSameByEveryMethod) {
   double worst = 0;
-  for_pairs([&](int i, const PairedEffect&, int j, const PairedEffect&) {
+  for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+    // where a tendon sticks and slips in a swing, each method smooths the border in its own way
+    const bool sticks = moving() && (a.name == std::string("tendon that rubs") ||
+                                     b.name == std::string("tendon that rubs"));
     const Answer x = answer(Method::kShooting, {i, 1}, {j, 1});
     for (const Method method : {Method::kStrain, Method::kCollocation}) {
       const double apart = (answer(method, {i, 1}, {j, 1}) - x).norm();
       worst = std::max(worst, apart);
-      EXPECT_LT(apart, 1e-8) << method_name(method);
+      EXPECT_LT(apart, sticks ? 2e-4 : 1e-8) << method_name(method);
     }
   });
   std::printf("methods differ by at most %.1e\n", worst);
@@ -172,6 +176,94 @@ TEST_P(PairsOfEffects, AreTheSameInAPlane) {
       EXPECT_LT(apart, 1e-11);
     });
   std::printf("planes differ by at most %.1e\n", worst);
+}
+
+// What pulls a length in is a tension: given instead, it does the same, with each other effect.
+TEST_P(PairsOfEffects, FindTheTensionThatWouldHaveToBeGiven) {
+  if (moving()) GTEST_SKIP() << "a tension that changes is not given by one number";
+  int held = 0;
+  while (!effects_[static_cast<std::size_t>(held)].constrains)
+    ++held;
+  for (const Method method : kEveryMethod)
+    for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+      if (i != held && j != held) return;
+      Scene scene = rod_for_pairs(false);
+      a.add(scene, 1);
+      b.add(scene, 1);
+      scene = coarsely(scene, method);
+      const Equilibrium found(scene, 1e-12);
+      ASSERT_TRUE(found.report.converged()) << found.report.worst_row;
+      for (DriveSpec& drive : scene.drives) {
+        if (drive.quantity != DriveQuantity::kDisplacement) continue;
+        drive.quantity = DriveQuantity::kTension;
+        drive.profile.terms[0].value =
+            found.robot.rods[0].model->tendons()[static_cast<std::size_t>(drive.tendon)].tension;
+        EXPECT_GT(drive.profile.terms[0].value, 0.1);
+      }
+      EXPECT_LT((solve(scene) - answer_of(found.rod())).norm(), 1e-8) << method_name(method);
+    });
+}
+
+// Slowly: a run without inertia ends where the equilibrium under the same loads is, with whichever
+// two effects. Dry friction remembers how it came there: of a base that is left out, of a tendon it
+// is little, for it is pulled in nearly all the time.
+TEST_P(PairsOfEffects, EndInQuasiStaticsWhereStaticsIs) {
+  if (moving()) GTEST_SKIP() << "once is enough";
+  double worst = 0;
+  int pairs = 0;
+  for (const Method method : kEveryMethod)
+    for_pairs([&](int i, const PairedEffect& a, int j, const PairedEffect& b) {
+      const auto either = [&](const std::string& name) { return a.name == name || b.name == name; };
+      if (either("sprung base that rubs")) return;
+      SCOPED_TRACE(method_name(method));
+      Scene scene = rod_for_pairs(true);
+      scene.simulation.mode = Mode::kQuasistatic;
+      for (const PairedEffect* each : {&a, &b})
+        each->add(scene, 1);
+      scene = coarsely(scene, method);
+      scene.solver.step = 0.03;
+      Simulation simulation(scene);
+      const Snapshot end = run_to_end(simulation);
+      ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
+      const double apart = (answer_of(end.rods[0]) - answer(method, {i, 1}, {j, 1})).norm();
+      worst = std::max(worst, apart);
+      ++pairs;
+      EXPECT_LT(apart, either("tendon that rubs") ? 2e-4 : 1e-8);
+    });
+  EXPECT_GT(pairs, 3 * 90);
+  std::printf("%d pairs, quasi-statics ends within %.1e of statics\n", pairs, worst);
+}
+
+// Listed where a rod does not reach itself it changes nothing, whatever else there is. Collocation
+// cuts rods that may touch in other places: it is compared where that is all, at rest.
+TEST_P(PairsOfEffects, AreNotDisturbedBySelfContactWithoutATouch) {
+  for (int i = 0; i < static_cast<int>(effects_.size()); ++i) {
+    const PairedEffect& effect = effects_[static_cast<std::size_t>(i)];
+    if (!effect.touches || (effect.moving && !moving())) continue;
+    for (const Method method : kEveryMethod) {
+      const bool recut = method == Method::kCollocation;
+      if (recut && moving()) continue;
+      Scene scene = rod_for_pairs(moving());
+      switch_on(scene, {Effect::kSelfContact});
+      effect.add(scene, 1);
+      EXPECT_LT((solve(coarsely(scene, method)) - answer(method, {i, 1})).norm(),
+                recut ? 1e-8 : 1e-9)
+          << effect.name << " by " << method_name(method);
+    }
+  }
+}
+
+// Else nothing would be known of it: what rubs holds the base back.
+TEST_P(PairsOfEffects, FeelDryFrictionOfTheBase) {
+  if (!moving()) GTEST_SKIP() << "equilibria at the start know none";
+  int sprung = -1, rubs = -1;
+  for (int i = 0; i < static_cast<int>(effects_.size()); ++i) {
+    const std::string name = effects_[static_cast<std::size_t>(i)].name;
+    if (name == "sprung base") sprung = i;
+    if (name == "sprung base that rubs") rubs = i;
+  }
+  for (const Method method : kEveryMethod)
+    EXPECT_GT((answer(method, {sprung, 1}) - answer(method, {rubs, 1})).norm(), 1e-3);
 }
 
 /// A wall beside the rod, which its tip is pressed against.
@@ -201,6 +293,7 @@ TEST_P(PairsOfEffects, KeepTheLawsOfContact) {
     double alone = 0;
     for (int i = -1; i < static_cast<int>(effects_.size()); ++i) {
       const auto at = static_cast<std::size_t>(std::max(i, 0));
+      if (i >= 0 && !effects_[at].touches) continue;
       if (i >= 0 && !moving() && (effects_[at].moving || effects_[at].name == std::string("disks")))
         continue;
       SCOPED_TRACE(i < 0 ? "alone" : effects_[at].name);

@@ -48,6 +48,42 @@ TEST(PlainKernel, ExecutesNotAThousandthMoreThanOneWithoutAnyEffect) {
   }
 }
 
+/// One sweep of a rod of costed_rods.h.
+struct Sweep {
+  long instructions = 0;
+  std::string found;
+};
+
+Sweep measured_sweep(const std::string& program, const std::string& method,
+                     const std::string& name) {
+  const ScratchFolder folder;
+  Sweep sweep;
+  const std::vector<long> counts = instructions_of_calls(
+      "'" CPRSIM_BINARY_DIR "/bin/" + program + "' " + method + " '" + name + "'", "measured_sweep",
+      folder.path(), sweep.found);
+  if (!counts.empty()) sweep.instructions = counts.front();
+  return sweep;
+}
+
+// Of strains and of splines: a rod beside one of a program in which tendons, fluids, loads along
+// rods, disks and contact are compiled out.
+TEST(PlainRod, ExecutesNotAThousandthMoreThanOneWithoutAnyEffect) {
+  if (!has_callgrind()) GTEST_SKIP() << kNoCallgrind;
+  for (const char* method : {"strain", "collocation"})
+    for (const char* name : {"none, at rest", "none, moving", "gravity", "extension, at rest",
+                             "extension, moving", "shear, at rest", "planar, at rest"}) {
+      SCOPED_TRACE(std::string(method) + ", " + name);
+      const Sweep shipped = measured_sweep("cprsim_section_costs", method, name),
+                  bare = measured_sweep("cprsim_bare_section_costs", method, name);
+      EXPECT_EQ(shipped.found, bare.found);
+      EXPECT_GT(bare.instructions, 20000);
+      EXPECT_LE(static_cast<double>(shipped.instructions),
+                1.001 * static_cast<double>(bare.instructions))
+          << shipped.instructions << " instructions, " << bare.instructions
+          << " without any effect";
+    }
+}
+
 // Products and sums are fused nowhere, whatever the machine could do.
 TEST(PlainKernel, GivesTheSameBytesByEveryCopy) {
   const ScratchFolder folder;

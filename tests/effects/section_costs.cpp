@@ -137,31 +137,64 @@ void compare_copies() {
   std::printf("%d\n", differ);
 }
 
-/// Sections that one sweep visits, and nanoseconds for each of them: the best of many sweeps.
-double nanoseconds(CostedRod& rod, long sections) {
-  using Clock = std::chrono::steady_clock;
+/// A rod that is swept, and what a section of it takes.
+struct TimedRod {
+  CostedRod rod;
   CondensedRod condensed;
-  double best = 1;
-  for (int run = 0; run < 4000; ++run) {
-    const Clock::time_point begin = Clock::now();
-    measured_sweep(rod.model(), rod.base(), rod.tip(), condensed);
-    const std::chrono::duration<double> spent = Clock::now() - begin;
-    best = std::min(best, spent.count());
-  }
-  return 1e9 * best / static_cast<double>(sections);
-}
+  long sections = 0;
+  double best = 1;  ///< s, of a sweep
 
+  TimedRod(const RodCase& at, Method method) : rod(at, method) {
+    // everything that is set up once is, before the sweep that counts
+    rod.model().evaluate(rod.base(), rod.tip());
+    rod.model().linearize(rod.base(), rod.tip(), condensed);
+    const long before = rod.model().section_evaluations();
+    measured_sweep(rod.model(), rod.base(), rod.tip(), condensed);
+    sections = rod.model().section_evaluations() - before;
+  }
+
+  void sweep(int times) {
+    using Clock = std::chrono::steady_clock;
+    for (int run = 0; run < times; ++run) {
+      const Clock::time_point begin = Clock::now();
+      measured_sweep(rod.model(), rod.base(), rod.tip(), condensed);
+      const std::chrono::duration<double> spent = Clock::now() - begin;
+      best = std::min(best, spent.count());
+    }
+  }
+
+  double nanoseconds() const { return 1e9 * best / static_cast<double>(sections); }
+};
+
+// Times are the best of many sweeps, those of a plain rod in between: what else a machine does
+// slows down both.
 void sweep_rod(const RodCase& at, Method method, bool timed) {
-  CostedRod rod(at, method);
-  CondensedRod condensed;
-  // everything that is set up once is, before the sweep that counts
-  rod.model().evaluate(rod.base(), rod.tip());
-  rod.model().linearize(rod.base(), rod.tip(), condensed);
-  const long before = rod.model().section_evaluations();
-  measured_sweep(rod.model(), rod.base(), rod.tip(), condensed);
-  const long sections = rod.model().section_evaluations() - before;
-  std::printf("%ld;%d;%.1f\n", sections, rod.model().unknown_count(),
-              timed ? nanoseconds(rod, sections) : 0);
+  TimedRod rod(at, method);
+  if (!timed) {
+    // what it finds, to the last bit
+    const CondensedRod& found = rod.condensed;
+    std::printf("%ld;%d", rod.sections, rod.rod.model().unknown_count());
+    const Eigen::Index d = std::string(at.name).starts_with("planar") ? 3 : 6;
+    for (Eigen::Index i = 0; i < d; ++i) {
+      for (Eigen::Index k = 0; k < d; ++k)
+        std::printf(" %a", found.T(i, k));
+      std::printf(" %a", found.t[i]);
+    }
+    for (const RodPoint& point : rod.rod.model().observe().points)
+      for (int i = 0; i < 3; ++i)
+        std::printf(" %a %a", point.position[i], point.moment[i]);
+    std::printf("\n");
+    return;
+  }
+  TimedRod plain(costed_cases().front(), method);
+  double spent = 0;
+  for (int round = 0; round < 100 && spent < 0.4; ++round) {
+    rod.sweep(20);
+    plain.sweep(20);
+    spent += 20 * (rod.best + plain.best);
+  }
+  std::printf("%ld;%d;%.1f;%.1f\n", rod.sections, rod.rod.model().unknown_count(),
+              rod.nanoseconds(), plain.nanoseconds());
 }
 
 void sweep_rods(const std::string& method_wanted, const std::string& name, bool timed) {

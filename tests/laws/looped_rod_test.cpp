@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "engine/run/simulation.h"
 #include "scenes/loader/load.h"
@@ -100,6 +101,38 @@ TEST(LoopedRod, RubsItselfAsThreeRodsRub) {
   const LoadResult loaded = loop();
   ASSERT_TRUE(loaded.scene);
   compare(*loaded.scene);
+}
+
+/// What each part has of an effect it has as a part of the whole, too; not weight, which the bodies
+/// between the parts have as well.
+std::vector<std::pair<const char*, std::function<void(Scene&)>>> other_effects() {
+  const auto listed = [](Effect effect) {
+    return [effect](Scene& scene) { scene.effects.set(effect, true); };
+  };
+  return {{"extension", listed(Effect::kExtension)},
+          {"shear", listed(Effect::kShear)},
+          {"rotary inertia", listed(Effect::kRotaryInertia)},
+          {"fluid", [](Scene& scene) {
+             scene.effects.set(Effect::kDrag, true);
+             scene.wind = {0.5, 0, 1};
+             DragSpec water;
+             water.normal = 0.5;
+             water.fluid_density = 500;
+             water.added_mass = 1;
+             scene.rods[0].drag = water;
+           }}};
+}
+
+TEST(LoopedRod, TouchesItselfWithOtherEffectsToo) {
+  const LoadResult loaded = loop();
+  ASSERT_TRUE(loaded.scene);
+  for (const auto& [name, add] : other_effects()) {
+    SCOPED_TRACE(name);
+    Scene scene = *loaded.scene;
+    scene.effects.set(Effect::kFriction, false);
+    add(scene);
+    compare(scene);
+  }
 }
 
 // Without the effect it passes through itself, and costs nothing.

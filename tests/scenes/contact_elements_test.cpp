@@ -8,7 +8,8 @@ namespace cprsim {
 namespace {
 
 /// The rod may touch a floor, and nothing else. `world` is added to the world.
-LoadResult load_on_floor(const std::string& world, const std::string& surface = "") {
+LoadResult load_on_floor(const std::string& world, const std::string& surface = "",
+                         const std::string& simulation = "") {
   std::string text = scene_text("", R"(
     <model name="scenery"><static>true</static>
       <link name="floor"><collision name="c"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision></link>
@@ -16,6 +17,7 @@ LoadResult load_on_floor(const std::string& world, const std::string& surface = 
     </model>)" + world);
   const std::string before = "<gravity/></cprsim:effects>";
   text.insert(text.find(before) + 10, "<contact/>");
+  if (!simulation.empty()) text.insert(text.find("</cprsim:simulation>"), simulation);
   const std::string length = "<length>0.4</length>\n";
   return load_text(text.insert(text.find(length), surface));
 }
@@ -59,6 +61,13 @@ TEST(SoftContact, IsReadFromEitherEngine) {
   const LoadResult damped =
       load_on_floor("", "<surface><contact><ode><kd>5</kd></ode></contact></surface>");
   EXPECT_TRUE(has_code(damped, "W592")) << "a damper without a spring";
+}
+
+TEST(PlanarContact, IsSolvedInSpaceAndSaysSo) {
+  const LoadResult result = load_on_floor("", "", "<planar normal=\"0 1 0\"/>");
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_FALSE(result.scene->planar_normal);
+  EXPECT_TRUE(has_code(result, "W592"));
 }
 
 TEST(SoftContact, OfLinksAmongThemselvesIsNoted) {

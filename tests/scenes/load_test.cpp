@@ -273,8 +273,9 @@ TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
   lax.lax = true;
   EXPECT_TRUE(load_text(text, lax).scene);
   EXPECT_EQ(error_codes(load_text(scene_text("<cprsim:tendon name='t' rod='leg'><parallel "
-                                             "radius='0.01' angle='0'/><friction mu='0.1'/>"
-                                             "</cprsim:tendon>"),
+                                             "radius='0.01' angle='0'/></cprsim:tendon>"
+                                             "<cprsim:drive rod='leg' quantity='length'>"
+                                             "<constant value='0.4'/></cprsim:drive>"),
                                   lax)),
             std::vector<std::string>{"E520"});
 }

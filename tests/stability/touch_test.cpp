@@ -36,6 +36,12 @@ TEST(Touch, ARodLiesStillOnAFloor) {
   measure("drift / L", drift, 1e-6);
 }
 
+// Of a round solid rod that rolls a third is spin, which only <rotary_inertia/> knows of.
+TEST(Touch, InertiaOfLooseRodsIsJudgedByRolling) {
+  EXPECT_NEAR(Simulation(contact_scene("slope")).facts().rods[0].rolling_number, 1. / 3, 1e-12);
+  EXPECT_EQ(Simulation(contact_scene("capstan")).facts().rods[0].rolling_number, 0);
+}
+
 // N22: nothing asks for short steps while a rod falls; the one that meets the floor begins far
 // above.
 TEST(Touch, ARodFallsOntoAFloorInALongStep) {

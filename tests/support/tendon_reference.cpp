@@ -17,10 +17,12 @@ struct State {
   Vec3 p = Vec3::Zero();
   Mat3 R = Mat3::Identity();  // its nine entries: the steps are small enough
   Vec3 u, v;
+  VecX tensions;
 };
 
 State plus(const State& a, double h, const State& rate) {
-  return {a.p + h * rate.p, a.R + h * rate.R, a.u + h * rate.u, a.v + h * rate.v};
+  return {a.p + h * rate.p, a.R + h * rate.R, a.u + h * rate.u, a.v + h * rate.v,
+          a.tensions + h * rate.tensions};
 }
 
 struct Way {
@@ -44,12 +46,22 @@ State rate(const PulledReferenceRod& rod, double s, const State& y) {
   A.bottomRightCorner<3, 3>() = rod.K_bt.asDiagonal();
   Vec6 b;
   b << y.u.cross(n) + y.R.transpose() * rod.load, y.u.cross(m) + y.v.cross(n);
-  for (const ReferenceTendon& tendon : rod.tendons) {
-    const Way at = way(tendon, s, rod.length);
+
+  struct Pull {
+    Way at;
+    Vec3 t, known;  ///< tau t' without what u', v' make of it
+    Mat3 P;
+  };
+
+  std::vector<Pull> pulls;
+  for (std::size_t k = 0; k < rod.tendons.size(); ++k) {
+    const double tension = y.tensions[static_cast<Eigen::Index>(k)];
+    const Way at = way(rod.tendons[k], s, rod.length);
     const Vec3 g = y.u.cross(at.r) + at.r_s + y.v, t = g.normalized();
-    const Mat3 P = tendon.tension / g.norm() * (Mat3::Identity() - t * t.transpose());
-    // (tau t)' in section axes: P (v' + u' × r + known) + u × tau t
-    const Vec3 known = P * (y.u.cross(at.r_s) + at.r_ss) + tendon.tension * y.u.cross(t);
+    const Mat3 P = tension / g.norm() * (Mat3::Identity() - t * t.transpose());
+    // (tau t)' in section axes: P (v' + u' × r + known) + u × tau t + tau' t
+    const Vec3 known = P * (y.u.cross(at.r_s) + at.r_ss) + tension * y.u.cross(t);
+    pulls.push_back({at, t, known, P});
     A.topLeftCorner<3, 3>() += P;
     A.topRightCorner<3, 3>() -= P * skew(at.r);
     A.bottomLeftCorner<3, 3>() += skew(at.r) * P;
@@ -57,8 +69,22 @@ State rate(const PulledReferenceRod& rod, double s, const State& y) {
     b.head<3>() += known;
     b.tail<3>() += at.r.cross(known);
   }
-  const Vec6 x = A.fullPivLu().solve(-b);
-  return {y.R * y.v, y.R * skew(y.u), x.tail<3>(), x.head<3>()};
+  const Eigen::FullPivLU<Mat6> lu(A);
+  Vec6 x = lu.solve(-b);
+  VecX losses = VecX::Zero(y.tensions.size());
+  for (int pass = 0; pass < 60 && rod.rubs(); ++pass) {
+    Vec6 all = b;
+    for (std::size_t k = 0; k < pulls.size(); ++k) {
+      const Pull& pull = pulls[k];
+      const Vec3 turned = pull.P * (x.head<3>() + x.tail<3>().cross(pull.at.r)) + pull.known;
+      const double loss = -rod.tendons[k].mu * turned.norm();
+      losses[static_cast<Eigen::Index>(k)] = loss;
+      all.head<3>() += loss * pull.t;
+      all.tail<3>() += loss * pull.at.r.cross(pull.t);
+    }
+    x = lu.solve(-all);
+  }
+  return {y.R * y.v, y.R * skew(y.u), x.tail<3>(), x.head<3>(), losses};
 }
 
 // The boundary condition at the tip is the law of an end section: solved by repeated substitution,
@@ -67,6 +93,9 @@ State tip(const PulledReferenceRod& rod) {
   State y;
   y.u = Vec3::Zero();
   y.v = kStraight;
+  y.tensions.resize(static_cast<Eigen::Index>(rod.tendons.size()));
+  for (std::size_t k = 0; k < rod.tendons.size(); ++k)
+    y.tensions[static_cast<Eigen::Index>(k)] = rod.tendons[k].tension;
   for (int k = 0; k < 500; ++k) {
     Vec3 n = rod.force, m = Vec3::Zero();
     for (const ReferenceTendon& tendon : rod.tendons) {
@@ -92,7 +121,7 @@ ReferenceBase solve_tendon_rod(const PulledReferenceRod& rod, int steps) {
                 c = rate(rod, s + h / 2, plus(y, h / 2, b)), d = rate(rod, s + h, plus(y, h, c));
     y = plus(plus(plus(plus(y, h / 6, a), h / 3, b), h / 3, c), h / 6, d);
   }
-  return {{y.R, y.p}, y.u, y.v};
+  return {{y.R, y.p}, y.u, y.v, y.tensions};
 }
 
 }  // namespace cprsim

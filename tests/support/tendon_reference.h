@@ -6,6 +6,8 @@
 //       m(L) = -(R r) × tau t
 // (tau t)' holds second derivatives of the tendon's way, so that u', v' follow from a linear
 // system at every s. Integrated by Runge and Kutta's rule from the tip, whose frame is the world.
+// With friction tau is integrated along: tau' = -mu |t'| tau in world axes, of which t' holds u',
+// v' and is found together with them by repeated substitution.
 #pragma once
 
 #include <vector>
@@ -16,7 +18,8 @@ namespace cprsim {
 
 /// A helix about the centreline; turns = 0: parallel to it.
 struct ReferenceTendon {
-  double radius = 0, angle = 0, turns = 0, tension = 0;
+  double radius = 0, angle = 0, turns = 0, tension = 0;  ///< at the tip
+  double mu = 0;
 };
 
 struct PulledReferenceRod {
@@ -25,11 +28,18 @@ struct PulledReferenceRod {
   std::vector<ReferenceTendon> tendons;
   Vec3 load = Vec3::Zero();   ///< N/m, axes of the tip
   Vec3 force = Vec3::Zero();  ///< N, at the tip, axes of the tip
+
+  bool rubs() const {
+    for (const ReferenceTendon& tendon : tendons)
+      if (tendon.mu > 0) return true;
+    return false;
+  }
 };
 
 struct ReferenceBase {
   Pose X_TB;  ///< base in the axes of the tip
   Vec3 u, v;  ///< strains at the base
+  VecX tensions;
 };
 
 ReferenceBase solve_tendon_rod(const PulledReferenceRod& rod, int steps);

@@ -61,6 +61,19 @@ TEST(ContactScenes, MeetTheirExpectationsByEveryMethod) {
   }
 }
 
+// A plane has no contact of its own: such a scene is solved in space.
+TEST(ContactScenes, MayBePlanar) {
+  const ScratchFolder folder;
+  for (const char* scene : {"over_a_cylinder.xml", "over_two_pegs.xml"}) {
+    std::string text = contents(kScenes / scene);
+    const std::size_t at = text.find("</duration>");
+    ASSERT_NE(at, std::string::npos) << scene;
+    text.insert(at + 11, "<planar normal=\"0 1 0\"/>");
+    spill(folder / scene, text);
+    EXPECT_EQ(run(folder / scene, "--strict"), 0) << scene;
+  }
+}
+
 // What the expectations are worth: without contact they fail.
 TEST(ContactScenes, FailWithoutContact) {
   EXPECT_EQ(run(kScenes / "rod_on_floor.xml", "--without contact"), 1);

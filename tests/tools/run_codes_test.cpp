@@ -105,5 +105,13 @@ TEST_F(RunCodes, StandInTheReport) {
   EXPECT_EQ(json("r/run.json")["failure"]["code"], "E603");
 }
 
+// Massless spin: a heap of loose rods stops, and the message says what it wants.
+TEST_F(RunCodes, AFailedHeapNamesTheInertiaThatIsMissing) {
+  const Answer heap =
+      run("run " + shipped("scenes/contact/pile.xml") + " --without rotary_inertia --no-video");
+  EXPECT_EQ(heap.code, 4);
+  EXPECT_TRUE(heap.complains("list <rotary_inertia/>")) << heap.err;
+}
+
 }  // namespace
 }  // namespace cprsim

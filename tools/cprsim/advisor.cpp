@@ -50,7 +50,10 @@ std::vector<AdviceLine> advise(const Scene& scene, const RodFacts& rod) {
   if (rod.magnetic_number > 0) add(Effect::kMagnetic, "M B L^2 / EI", rod.magnetic_number);
   if (rod.thermal_number > 0) add(Effect::kThermal, "alpha T, alpha g L", rod.thermal_number);
   if (scene.simulation.mode == Mode::kDynamic) {
-    add(Effect::kRotaryInertia, "J / (M L^2)", rod.rotary_number);
+    if (rod.rolling_number > 0)
+      add(Effect::kRotaryInertia, "J / (J + M r^2)", rod.rolling_number);
+    else
+      add(Effect::kRotaryInertia, "J / (M L^2)", rod.rotary_number);
     add(Effect::kDamping, "zeta_1", rod.damping_ratio);
   }
   return lines;

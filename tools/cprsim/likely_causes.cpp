@@ -136,6 +136,19 @@ void blame_iterations(const Scene& scene, const SolveReport& solve, Causes& caus
                   *scene.solver.max_iterations, solve.initial_residual, solve.residual));
 }
 
+/// What rubs on a loose rod turns it about its axis.
+void blame_spin(const Scene& scene, const ProblemFacts& facts, Causes& causes) {
+  if (scene.effects.has(Effect::kRotaryInertia)) return;
+  for (const RodFacts& rod : facts.rods) {
+    if (rod.rolling_number == 0) continue;
+    causes.push_back(fmt::format(
+        "rod '{}' is loose, and nothing resists what friction turns about its axis: list "
+        "<rotary_inertia/>",
+        rod.name));
+    return;
+  }
+}
+
 }  // namespace
 
 Causes likely_causes(const Scene& scene, const ProblemFacts& facts, const SolveReport& solve,
@@ -143,6 +156,7 @@ Causes likely_causes(const Scene& scene, const ProblemFacts& facts, const SolveR
   Causes causes;
   const double step = facts.step > 0 ? facts.step : scene.max_step_size;
   if (started) blame_jumps(scene, time, step, causes);
+  if (started) blame_spin(scene, facts, causes);
   blame_resolution(scene, facts, causes);
   blame_tolerance(scene, solve, causes);
   blame_iterations(scene, solve, causes);

@@ -49,6 +49,7 @@ constexpr std::string_view kStarterScene = R"xml(<?xml version="1.0"?>
       <!-- <contact/> --> <!-- of the wire and the ball with the floor -->
       <!-- <friction/> --> <!-- in contacts: list contact, too -->
       <!-- <self_contact/> --> <!-- of a rod with itself -->
+      <!-- <tendon_friction/> --> <!-- of tendons that have <friction>, along rods that touch nothing -->
       <!-- <magnetic/> --> <!-- of <cprsim:magnetic_field> on the rod's <magnetization> -->
       <!-- <thermal/> --> <!-- the rod grows and bends as <temperature> says; a <rise> needs extension, too -->
     </cprsim:effects>
@@ -95,12 +96,18 @@ constexpr std::string_view kStarterScene = R"xml(<?xml version="1.0"?>
         </drag>
         <magnetization>0 0 3</magnetization> <!-- magnetic moment per length, A m: a remanence of 1.2 T along it -->
         <temperature><gradient>0 2000</gradient></temperature> <!-- K/m: 4 K from one side to the other -->
-        <!-- <rest><curvature>0 2 0</curvature></rest> --> <!-- bent without load: 2/m about its y axis -->
+        <!-- <rest><curvature>0 2 0</curvature></rest> --> <!-- bent without load: 2/m about its y axis; or <helix>, or <file> -->
+        <!-- <disks count="4"><radius>0.01</radius><mass>0.0005</mass></disks> --> <!-- rigid, across it -->
       </cprsim:rod>
-      <!-- <cprsim:tendon name="cable" rod="wire"><parallel radius="0.008" angle="0"/></cprsim:tendon><cprsim:drive tendon="cable" quantity="tension"><constant value="5"/></cprsim:drive> --> <!-- pulled with 5 N -->
+      <!-- <cprsim:tendon name="cable" rod="wire"><parallel radius="0.008" angle="0"/><friction mu="0.1"/></cprsim:tendon><cprsim:drive tendon="cable" quantity="tension"><constant value="5"/></cprsim:drive> --> <!-- pulled with 5 N -->
       <cprsim:load at="ball"><force>0 0 0.2</force><step from="1" to="0" at="0.05"/></cprsim:load>
+      <!-- <cprsim:load at="ball" expressed_in="ball"><force>0 0.1 0</force><torque>0 0 0.001</torque></cprsim:load> --> <!-- follows the ball -->
       <!-- <cprsim:load along="wire"><force>0 1 0</force></cprsim:load> --> <!-- 1 N/m all along it -->
       <!-- <cprsim:load at="wire(s=0.5)"><force>0 0 -0.1</force></cprsim:load> --> <!-- at a point of the rod -->
+      <!-- <cprsim:load along="wire"><foundation><stiffness>20</stiffness><point>0 0 0.2</point><normal>0 0 1</normal></foundation></cprsim:load> --> <!-- springs all along, towards a plane -->
+      <!-- <cprsim:load along="wire"><conducting_plane><charge>2e-7</charge><point>0 0 0</point><normal>0 0 1</normal></conducting_plane></cprsim:load> --> <!-- attracts the charged wire -->
+      <!-- <cprsim:drive rod="wire" quantity="length"><smoothstep from="0.3" to="0.32" start="0.1" end="0.6"/></cprsim:drive> --> <!-- fed through its base -->
+      <!-- <link name="bob"><pose>0.3 0 0.17 0 0 0</pose><inertial><mass>0.002</mass><inertia><ixx>1e-7</ixx><iyy>1e-7</iyy><izz>1e-7</izz></inertia></inertial></link><joint name="hinge" type="revolute"><pose>0 0 0.02 0 0 0</pose><parent>ball</parent><child>bob</child><axis><xyz>0 1 0</xyz><dynamics><damping>1e-5</damping><friction>1e-4</friction><spring_stiffness>1e-3</spring_stiffness></dynamics></axis></joint> --> <!-- hangs on a hinge that rubs, on a spring -->
     </model>
 
     <cprsim:camera name="view"><eye>0.15 -0.8 0.35</eye><look_at>0.15 0 0.17</look_at></cprsim:camera>

@@ -64,6 +64,24 @@ TEST(NewtonDirection, IsExactForTensionsThatAreUnknown) {
   }
 }
 
+TEST(NewtonDirection, IsExactWithTendonsThatRub) {
+  for (const bool displaced : {false, true}) {
+    Scene scene = chain_with_tendons(EndJoint::kFixed);
+    scene.effects.set(Effect::kTendonFriction, true);
+    for (TendonSpec& tendon : scene.tendons)
+      tendon.friction = 0.3;
+    if (displaced) {
+      scene.drives[0].quantity = DriveQuantity::kDisplacement;
+      scene.drives[0].profile = constant_profile(0.03);
+    }
+    expect_exact(scene, {}, "statics");
+    expect_exact(scene, {Rates::kBackwardEuler}, "dynamics");
+    set_all_effects(scene);
+    expect_exact(scene, {}, "statics, all effects");
+    expect_exact(scene, {Rates::kGeneralizedAlpha}, "dynamics, all effects");
+  }
+}
+
 TEST(NewtonDirection, IsExactWithDisks) {
   Scene scene = chain_of_rods(EndJoint::kFixed, EndJoint::kRevolute);
   scene.rods[0].disks = {{1, 0.2, 0.3}};
