@@ -46,7 +46,7 @@ long Equations::section_evaluations() const {
 // section does; collocation has a band, the strain basis a full matrix, of whose products that many
 // cost the same.
 long Equations::work() const {
-  constexpr long kBandProducts = 200, kFullProducts = 1000;
+  constexpr long kBandProducts = 500, kFullProducts = 1000;
   constexpr long kFields = 13;  // pose, force and moment of a point
   long direction = 0;
   for (const RobotRod& rod : robot_.rods) {
