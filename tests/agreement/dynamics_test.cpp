@@ -2,6 +2,7 @@
 // Motion by every method: an independent solution, closed loops in a plane, energy, thin rods.
 #include <gtest/gtest.h>
 
+#include "tests/support/end_of.h"
 #include "tests/support/methods.h"
 #include "tests/support/planar_robots.h"
 #include "tests/support/released_rod.h"
@@ -12,13 +13,6 @@ namespace {
 class EveryMethodMoving : public ::testing::TestWithParam<Method> {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethodMoving, ::testing::ValuesIn(kEveryMethod), test_name);
-
-Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  const Snapshot end = run_to_end(simulation);
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return end;
-}
 
 Vec3 tip_of(const Snapshot& snapshot) {
   return snapshot.rods[0].points.back().position;

@@ -84,7 +84,7 @@ Scene welded() {
   return scene;
 }
 
-Snapshot end_of(const Scene& scene) {
+Snapshot made_end_of(const Scene& scene) {
   Simulation simulation(scene, nullptr, make);
   const Snapshot end = run_to_end(simulation);
   EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
@@ -158,7 +158,7 @@ TEST(FourthMethod, ClosesAGap) {
   Scene apart = linked();
   apart.bodies[1].X_WB.p += Vec3(0.02, -0.03, 0.01);
   apart.bodies[1].X_WB.R = exp_so3({0.2, 0, -0.3}) * apart.bodies[1].X_WB.R;
-  EXPECT_LT(difference(end_of(apart), end_of(welded())), 1e-10);
+  EXPECT_LT(difference(made_end_of(apart), made_end_of(welded())), 1e-10);
 }
 
 // m g at the end of a link that sticks out sideways.
@@ -171,7 +171,7 @@ TEST(FourthMethod, BearsAWeight) {
   RodSpec link = elastic("link", Method::kAuto, kWorld, out, 0, Pose{out.R, Vec3::Zero()});
   link.length = kLink;
   scene.rods.push_back(link);
-  const Snapshot end = end_of(scene);
+  const Snapshot end = made_end_of(scene);
   const RodPoint &base = end.rods[0].points.front(), &tip = end.rods[0].points.back();
   EXPECT_LT((base.force - Vec3(0, 0, -0.2 * 9.81)).norm(), 1e-10);
   EXPECT_LT((base.moment - Vec3(0, kLink * 0.2 * 9.81, 0)).norm(), 1e-10);
@@ -191,13 +191,14 @@ TEST(FourthMethod, MovesAsTheSameRobotWithAWeld) {
       scene->solver.step = step;
       scene->solver.residual_tolerance = 1e-11;
     }
-    const Snapshot found = end_of(one), expected = end_of(other);
+    const Snapshot found = made_end_of(one), expected = made_end_of(other);
     EXPECT_LT(std::abs(found.energy.balance), 1e-2 * found.energy.dissipated);
     return difference(found, expected);
   };
   Scene rest = welded(), moves = welded();
   moves.loads.clear();
-  EXPECT_GT(difference(end_of(rest), end_of(moves)), 1e-3);  // what the release moves it by
+  EXPECT_GT(difference(made_end_of(rest), made_end_of(moves)),
+            1e-3);  // what the release moves it by
   const double coarse = apart(1e-3), fine = apart(5e-4);
   EXPECT_LT(fine, 1e-9);
   EXPECT_GT(std::log2(coarse / fine), 1.8);

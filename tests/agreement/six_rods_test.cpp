@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/so3.h"
+#include "tests/support/end_of.h"
 #include "tests/support/methods.h"
 #include "tests/support/robots.h"
 
@@ -50,13 +51,6 @@ Scene by(Method method) {
   scene.solver.elements = method == Method::kStrain ? 1 : 8;
   scene.solver.degree = 8;
   return scene;
-}
-
-Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  const Snapshot end = run_to_end(simulation);
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return end;
 }
 
 /// Largest distance of the plate or of any end or middle of a leg.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/math/so3.h"
+#include "tests/support/end_of.h"
 #include "tests/support/methods.h"
 #include "tests/support/robots.h"
 
@@ -92,13 +93,6 @@ Scene exchanged(Scene scene) {
   for (LoadSpec& load : scene.loads)
     load.rod_s = 1 - load.rod_s;
   return scene;
-}
-
-Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  const Snapshot end = run_to_end(simulation);
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return end;
 }
 
 /// How far the bodies of `b` are from those of `a` moved by X; radians count as rod lengths.

@@ -10,6 +10,7 @@
 #include "scenes/loader/load.h"
 #include "tests/laws/plane_elastica.h"
 #include "tests/support/box_mesh.h"
+#include "tests/support/end_of.h"
 
 namespace cprsim {
 namespace {
@@ -18,16 +19,6 @@ constexpr double kPi = 3.14159265358979323846;
 
 LoadResult contact_scene(const std::string& name) {
   return load_scene(std::string(CPRSIM_SOURCE_DIR) + "/scenes/contact/" + name + ".xml");
-}
-
-/// Runs a scene to its end. @return its last state
-Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  simulation.start();
-  while (simulation.status() == RunStatus::kRunning)
-    simulation.advance();
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return simulation.now();
 }
 
 double total_force(const HeldState& u) {

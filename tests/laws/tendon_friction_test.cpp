@@ -3,6 +3,7 @@
 // are integrated by a program of its own, pulled in, held and let go.
 #include <gtest/gtest.h>
 
+#include "tests/support/end_of.h"
 #include "tests/support/methods.h"
 #include "tests/support/tendon_reference.h"
 #include "tests/support/tendons.h"
@@ -186,13 +187,6 @@ Scene pulled(Method method, const std::vector<double>& tensions, int steps) {
   scene.solver.step = 1. / steps;
   scene.solver.tolerance = 1e-11;
   return scene;
-}
-
-Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  const Snapshot end = run_to_end(simulation);
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return end;
 }
 
 // From T_0 to T_1 < T_0 it slips back as far as s_1 = (T_0 - T_1) / 2 a T_1, a = mu T_0 r / EI:

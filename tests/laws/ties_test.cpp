@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/study/modes.h"
+#include "tests/support/end_of.h"
 #include "tests/support/methods.h"
 #include "tests/support/robots.h"
 #include "tests/support/tendons.h"
@@ -37,13 +38,6 @@ Scene released(Scene scene) {
   scene.solver.scheme = SchemeKind::kEsdirk43;
   scene.solver.step = 1e-3;
   return scene;
-}
-
-Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  Snapshot end = run_to_end(simulation);
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return end;
 }
 
 class Ties : public ::testing::TestWithParam<Method> {};
