@@ -134,6 +134,8 @@ void read_expect(Reading& r, const Node& node) {
   ExpectSpec expect;
   expect.name = node.value("name");
   expect.place = node.place;
+  if (node.children.empty())
+    r.report.missing("E303", node, "<cprsim:expect> '" + expect.name + "' expects nothing");
   for (const auto& child : node.children) {
     if (child->broken) continue;
     if (child->name == "fails") {
