@@ -19,14 +19,24 @@ Eigen::AlignedBox3d box_of(const std::vector<NodeState>& nodes, std::size_t firs
   return {box.min() - Vec3::Constant(margin), box.max() + Vec3::Constant(margin)};
 }
 
+/// Of any two of their points.
+double farthest(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) {
+  return (a.max() - b.min()).cwiseAbs().cwiseMax((b.max() - a.min()).cwiseAbs()).norm();
+}
+
 }  // namespace
 
+/// At most so much nearer are they now.
 double RodContacts::moved(const Rod& rod, const Scan& since) const {
   const std::vector<NodeState>& nodes = rod.side->contact_nodes();
   if (since.nodes.size() != nodes.size()) return std::numeric_limits<double>::infinity();
   double own = 0, most = 0;
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    own = std::max(own, (position_of(nodes[k]) - since.nodes[k]).norm());
+  Eigen::AlignedBox3d ways;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Vec3 way = position_of(nodes[k]) - since.nodes[k];
+    own = std::max(own, way.norm());
+    ways.extend(way);
+  }
   for (std::size_t o = 0; o < rod.obstacles.size(); ++o) {
     const Obstacle& obstacle = rod.obstacles[o];
     double far = own;
@@ -37,13 +47,10 @@ double RodContacts::moved(const Rod& rod, const Scan& since) const {
         far = std::max(far, (position_of(nodes[k]) - shift * since.nodes[k]).norm());
     } else if (obstacle.rod >= 0) {
       const auto& others = rods_[static_cast<std::size_t>(obstacle.rod)].side->contact_nodes();
-      far = 0;
-      for (std::size_t k = 0; k < nodes.size(); ++k) {
-        const Vec3 by = position_of(nodes[k]) - since.nodes[k];
-        for (std::size_t m = 0; m < others.size(); ++m)
-          far = std::max(far, (by - position_of(others[m]) + since.others[o][m]).squaredNorm());
-      }
-      far = std::sqrt(far);
+      Eigen::AlignedBox3d theirs;
+      for (std::size_t m = 0; m < others.size(); ++m)
+        theirs.extend(position_of(others[m]) - since.others[o][m]);
+      far = farthest(ways, theirs);
     }
     most = std::max(most, far);
   }
@@ -78,6 +85,7 @@ bool RodContacts::far_away(const Rod& rod) const {
 
 void RodContacts::scan(Rod& rod) const {
   Scan& out = rod.scan;
+  ++out.number;
   const std::vector<NodeState>& nodes = rod.side->contact_nodes();
   out.nodes.clear();
   for (const NodeState& node : nodes)

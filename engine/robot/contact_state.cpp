@@ -22,6 +22,7 @@ void RodContacts::visit(Archive& archive) {
       scan.others.resize(robot_.rods_meet ? obstacles : 0);
     }
     archive(scan.clearance);
+    if (archive.reading()) ++scan.number;
     for (Vec3& node : scan.nodes)
       archive(node);
     for (std::size_t k = 0; k < scan.near.size(); ++k) {

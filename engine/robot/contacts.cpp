@@ -257,7 +257,7 @@ void RodContacts::begin_step() {
     // while a rod is far away, the distances of an older scan will do
     if (rod.scan.nodes.empty() || touches(rod) || 8 * moved(rod, rod.scan) >= rod.scan.clearance)
       scan(rod);
-    rod.start = rod.scan;
+    if (rod.start.number != rod.scan.number) rod.start = rod.scan;
   }
 }
 

@@ -120,6 +120,7 @@ class RodContacts {
   };
 
   struct Scan {
+    long number = 0;  ///< how many there were before
     std::vector<Vec3> nodes;
     std::vector<Near> near;                 ///< cells × obstacles
     std::vector<Pose> bodies;               ///< of each obstacle on one
