@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/math/golden_section.h"
 #include "engine/robot/body_contacts.h"
 
 namespace cprsim {
@@ -20,37 +21,13 @@ double BodyContacts::distance(const BodyProbe& probe, const Vec3& at, Vec3* norm
   return found.d;
 }
 
-// Samples, then golden section around the lowest; ends are corners, which have probes of their own.
+// Ends are corners, which have probes of their own.
 BodyContacts::Foot BodyContacts::lowest_on_edge(const BodyProbe& probe) const {
-  constexpr int kSamples = 8;
-  constexpr double kGolden = 0.3819660112501051, kEnd = 1e-3;
+  constexpr double kEnd = 1e-3;
   const auto place = [&](double s) {
     return Vec3(probe.X_BC * (probe.a + s * (probe.b - probe.a)));
   };
-  const auto depth = [&](double s) { return distance(probe, place(s), nullptr); };
-  double best = kFar, s = 0;
-  for (int i = 0; i <= kSamples; ++i) {
-    const double at = static_cast<double>(i) / kSamples, d = depth(at);
-    if (d >= best) continue;
-    best = d;
-    s = at;
-  }
-  double a = std::max(0.0, s - 1.0 / kSamples), b = std::min(1.0, s + 1.0 / kSamples);
-  double x1 = a + kGolden * (b - a), x2 = b - kGolden * (b - a), d1 = depth(x1), d2 = depth(x2);
-  while (b - a > 1e-7) {
-    if (d1 < d2) {
-      b = x2;
-      x2 = x1;
-      d2 = d1;
-      d1 = depth(x1 = a + kGolden * (b - a));
-    } else {
-      a = x1;
-      x1 = x2;
-      d1 = d2;
-      d2 = depth(x2 = b - kGolden * (b - a));
-    }
-  }
-  s = d1 < d2 ? x1 : x2;
+  const double s = lowest_of([&](double at) { return distance(probe, place(at), nullptr); }).at;
   Foot foot;
   foot.at = place(s);
   foot.gap =

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/math/golden_section.h"
 #include "engine/robot/contacts.h"
 
 namespace cprsim {
@@ -67,40 +68,11 @@ bool RodContacts::flat(const Rod& rod, std::size_t obstacle, std::size_t cell, d
          (rod.obstacles[obstacle].rod < 0 && away < kContactTolerance * rod.radius);
 }
 
-// Samples, then golden section around the lowest.
 double RodContacts::lowest(const Rod& rod, std::size_t obstacle, std::size_t cell,
                            double& xi) const {
-  constexpr int kSamples = 8;
-  constexpr double kGolden = 0.3819660112501051;
-  const auto depth = [&](double at) { return distance(rod, obstacle, cell, at).d; };
-  double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kSamples; ++i) {
-    const double at = static_cast<double>(i) / kSamples, d = depth(at);
-    if (d >= best) continue;
-    best = d;
-    xi = at;
-  }
-  double a = std::max(0.0, xi - 1.0 / kSamples), b = std::min(1.0, xi + 1.0 / kSamples);
-  double x1 = a + kGolden * (b - a), x2 = b - kGolden * (b - a), d1 = depth(x1), d2 = depth(x2);
-  // a minimum is known to the square root of round-off
-  while (b - a > 1e-7) {
-    if (d1 < d2) {
-      b = x2;
-      x2 = x1;
-      d2 = d1;
-      d1 = depth(x1 = a + kGolden * (b - a));
-    } else {
-      a = x1;
-      x1 = x2;
-      d1 = d2;
-      d2 = depth(x2 = b - kGolden * (b - a));
-    }
-  }
-  if (std::min(d1, d2) < best) {
-    best = std::min(d1, d2);
-    xi = d1 < d2 ? x1 : x2;
-  }
-  return best;
+  const Lowest found = lowest_of([&](double at) { return distance(rod, obstacle, cell, at).d; });
+  xi = found.at;
+  return found.value;
 }
 
 /// What a joint holds cannot be pushed.
