@@ -58,7 +58,7 @@ RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
                                             sections, stations)});
     friction_unknowns_ += frictions_.back().law.unknowns();
   }
-  track_.resize(static_cast<Eigen::Index>(n * (frictions_.empty() ? 1 : 1 + sections.size())));
+  track_.resize(static_cast<Eigen::Index>(n));
   if (frictions_.empty()) return;
   curvatures_.assign(sections.size(), Vec3::Zero());
   spread_.assign(n * sections.size(), 0);
@@ -227,12 +227,9 @@ std::vector<TendonSample> RodTendons::observe() const {
     const TendonFriction* friction = friction_of(k);
     if (!friction) continue;
     sample.end_tension *= friction->factor_at(tendons_[k].end(), tendons_[k].end());
-    sample.lost_rate = sample.rate;
-    for (std::size_t i = 0; i < sections_.size(); ++i) {
-      if (!sections_[i].places[k].there) continue;
-      sample.along.emplace_back(friction->factor(i), shortening(i, k));
-      sample.lost_rate -= friction->factor(i) * track_.v[place_in_track(i, k)];
-    }
+    for (std::size_t i = 0; i < sections_.size(); ++i)
+      if (sections_[i].places[k].there)
+        sample.along.emplace_back(friction->factor(i), shortening(i, k));
   }
   return samples;
 }
@@ -241,10 +238,6 @@ void RodTendons::fill_track() {
   const std::vector<double> now = lengths();
   for (std::size_t k = 0; k < now.size(); ++k)
     track_.x[static_cast<Eigen::Index>(k)] = unloaded_[k] - now[k];
-  if (frictions_.empty()) return;
-  for (std::size_t i = 0; i < sections_.size(); ++i)
-    for (std::size_t k = 0; k < now.size(); ++k)
-      track_.x[place_in_track(i, k)] = shortening(i, k);
 }
 
 void RodTendons::start_track() {
@@ -256,11 +249,9 @@ void RodTendons::start_track_moving(const std::vector<Vec6>& strain_rates) {
   fill_track();
   VecX v = VecX::Zero(track_.x.size());
   for (std::size_t i = 0; i < sections_.size(); ++i)
-    for (std::size_t k = 0; k < tendons_.size(); ++k) {
-      const double rate = -weights_[i] * stretch_by_strain(sections_[i], k).dot(strain_rates[i]);
-      v[static_cast<Eigen::Index>(k)] += rate;
-      if (!frictions_.empty()) v[place_in_track(i, k)] = rate;
-    }
+    for (std::size_t k = 0; k < tendons_.size(); ++k)
+      v[static_cast<Eigen::Index>(k)] -=
+          weights_[i] * stretch_by_strain(sections_[i], k).dot(strain_rates[i]);
   track_.set_start(VecX(track_.x), v);
 }
 

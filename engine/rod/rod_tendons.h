@@ -113,10 +113,6 @@ class RodTendons {
   const TendonFriction* friction_of(std::size_t tendon) const;
   void spread_tensions();
 
-  Eigen::Index place_in_track(std::size_t section, std::size_t tendon) const {
-    return static_cast<Eigen::Index>((section + 1) * tendons_.size() + tendon);
-  }
-
   /// Of a tendon's way at a section, up to a constant.
   double shortening(std::size_t section, std::size_t tendon) const {
     return -weights_[section] * sections_[section].stretch[tendon];

@@ -25,7 +25,6 @@ struct TendonSample {
   double tension = 0, displacement = 0;  ///< N, m
   double end_tension = 0;                ///< N, where it is fastened
   double rate = 0;                       ///< of the displacement, m/s
-  double lost_rate = 0;                  ///< m/s; times the tension: the power that friction takes
   /// With friction, of every section that it passes: its tension over that at the motor, and by how
   /// much its way there has become shorter (m).
   std::vector<Vec2> along = {};
