@@ -188,15 +188,26 @@ std::vector<double> pchip_slopes(const std::vector<double>& h, const std::vector
 }
 
 // (4): m_{i-1}/h_{i-1} + 2 m_i (1/h_{i-1} + 1/h_i) + m_{i+1}/h_i = 3 (d_{i-1}/h_{i-1} + d_i/h_i)
-std::vector<double> spline_slopes(const std::vector<double>& h, const std::vector<double>& d) {
+std::vector<double> spline_slopes(const std::vector<double>& h, const std::vector<double>& d,
+                                  const EndSlopes* given) {
   const std::size_t n = h.size() + 1;
   std::vector<double> diagonal(n), right(n), upper(n, 0);
   diagonal[0] = 2 / h[0];
   right[0] = 3 * d[0] / h[0];
   upper[0] = 1 / h[0];
+  if (given) {
+    diagonal[0] = 1;
+    right[0] = given->first;
+    upper[0] = 0;
+  }
   for (std::size_t i = 1; i < n; ++i) {
-    const double lower = 1 / h[i - 1];
     const bool last = i + 1 == n;
+    if (last && given) {
+      diagonal[i] = 1;
+      right[i] = given->last;
+      break;
+    }
+    const double lower = 1 / h[i - 1];
     diagonal[i] = 2 / h[i - 1] + (last ? 0 : 2 / h[i]);
     right[i] = 3 * d[i - 1] / h[i - 1] + (last ? 0 : 3 * d[i] / h[i]);
     if (!last) upper[i] = 1 / h[i];
@@ -239,7 +250,7 @@ double least_acceleration(const ProfileTerm& trapezoid) {
   return 4 * std::abs(trapezoid.to - trapezoid.from) / (T * T);
 }
 
-void finish_keyframes(ProfileTerm& term) {
+void finish_keyframes(ProfileTerm& term, const EndSlopes* ends) {
   const std::size_t n = term.times.size();
   term.slopes.assign(n, 0);
   const bool smooth =
@@ -251,7 +262,7 @@ void finish_keyframes(ProfileTerm& term) {
     d[i] = (term.values[i + 1] - term.values[i]) / h[i];
   }
   term.slopes =
-      term.interpolation == Interpolation::kPchip ? pchip_slopes(h, d) : spline_slopes(h, d);
+      term.interpolation == Interpolation::kPchip ? pchip_slopes(h, d) : spline_slopes(h, d, ends);
 }
 
 }  // namespace cprsim

@@ -60,7 +60,13 @@ struct Profile {
 /// Below it a trapezoid does not arrive in time.
 double least_acceleration(const ProfileTerm& trapezoid);
 
-/// Computes the slopes of pchip (Fritsch-Carlson) and natural cubic keyframes.
-void finish_keyframes(ProfileTerm& term);
+/// Of a spline, at its first and last key.
+struct EndSlopes {
+  double first = 0, last = 0;
+};
+
+/// Computes the slopes of pchip (Fritsch-Carlson) and cubic keyframes.
+/// @param ends of the cubic spline; null: the natural one, whose second derivatives vanish there
+void finish_keyframes(ProfileTerm& term, const EndSlopes* ends = nullptr);
 
 }  // namespace cprsim

@@ -87,6 +87,12 @@ struct RestSample {
   Vec3 curvature = Vec3::Zero();
 };
 
+/// A point of a rod's centreline at s, a fraction of its length; world axes.
+struct CurveSample {
+  double s = 0;
+  Vec3 position = Vec3::Zero();
+};
+
 /// A rigid thin disk across the rod, its centre on the centreline; without a radius a point mass.
 struct DiskSpec {
   double s = 1;                 ///< where it is, as a fraction of the rod's length, above 0
@@ -121,6 +127,7 @@ struct RodSpec {
   /// Bending about x and y, twist: of the unloaded rod, section axes, 1/m.
   Vec3 rest_curvature = Vec3::Zero();
   std::vector<RestSample> rest_samples;  ///< instead of it, from 0 to 1; a cubic spline between
+  std::vector<CurveSample> start;        ///< where it is to begin, from 0 to 1; empty: unloaded
   std::optional<DampingSpec> damping;
   std::optional<DragSpec> drag;
   std::vector<DiskSpec> disks;  ///< by ascending s

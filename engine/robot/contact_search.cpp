@@ -21,6 +21,8 @@ constexpr double kFlat = 1e-6;
 constexpr double kMostKappa = 1e3;
 // of a cell: a node this near to a contact needs none of its own
 constexpr double kBeside = 0.1;
+// in cells: how far apart two points of one valley may be
+constexpr double kValley = 1.5;
 
 }  // namespace
 
@@ -112,6 +114,33 @@ RodContact RodContacts::new_contact(const Rod& rod, std::size_t obstacle, std::s
   return contact;
 }
 
+// Rods that are nearly parallel are near in a wide valley: pushed apart at one place, they are
+// nearest at another, on the other side of its middle, and pushed there, at the first again. Two
+// points hold such a valley, and neither moves on to the other.
+bool RodContacts::brackets(Rod& rod, const RodContact& contact, double by) const {
+  if (rod.obstacles[static_cast<std::size_t>(contact.surface)].rod < 0) return false;
+  const double at = static_cast<double>(contact.cell) + contact.xi;
+  const auto lies = [&](double other) {
+    return (other - at) * by > 0 && std::abs(other - at) < kValley;
+  };
+  const std::vector<RodContact>& all = rod.side->contacts();
+  if (std::any_of(all.begin(), all.end(), [&](const RodContact& other) {
+        return other.role != ContactRole::kEcho && other.surface == contact.surface &&
+               lies(static_cast<double>(other.cell) + other.xi);
+      }))
+    return true;
+  const auto stays = [&](const std::pair<int, double>& valley) {
+    return valley.first == contact.surface && std::abs(valley.second - at) < kValley;
+  };
+  if (std::any_of(rod.valleys.begin(), rod.valleys.end(), stays)) return true;
+  const bool back = std::any_of(rod.slides.begin(), rod.slides.end(), [&](const Slide& slide) {
+    return slide.surface == contact.surface && slide.to == at && slide.by * by < 0 &&
+           std::abs(by) > 0.5 * std::abs(slide.by);
+  });
+  if (back) rod.valleys.emplace_back(contact.surface, at);
+  return back;
+}
+
 // To where the rod is nearest now, along its cell or on to the next; points on a plane stay at
 // their nodes. @return whether it was elsewhere
 bool RodContacts::slide(Rod& rod, RodContact& contact) const {
@@ -155,6 +184,7 @@ bool RodContacts::slide(Rod& rod, RodContact& contact) const {
   const double way = std::abs(by) * length(rod, cell);
   const double turn = way * std::abs(t.dot(distance(rod, obstacle, cell, xi).H * t));
   const bool elsewhere = way > kSlide * rod.radius || turn > kTurn;
+  if (elsewhere && brackets(rod, contact, by)) return false;
   if (elsewhere) leap(rod, contact, by, cell, xi);
   contact.cell = cell;
   contact.xi = xi;
@@ -230,12 +260,32 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes, bool l
              (contact.cell == cell || (contact.at_node() && contact.cell == cell + 1));
     });
   };
+  // downhill all the way from one that touches: that one will get there itself
+  const auto downhill = [&](std::size_t o, double from, double to) {
+    constexpr int kLooks = 4;
+    double last = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kLooks; ++i) {
+      const double at = from + (to - from) * i / kLooks;
+      const std::size_t cell = std::min(static_cast<std::size_t>(at), cells - 1);
+      const double d = distance(rod, o, cell, at - static_cast<double>(cell)).d;
+      if (d > last) return false;
+      last = d;
+    }
+    return true;
+  };
+  const auto open = [&](std::size_t o, double at) {
+    return std::any_of(rod.valleys.begin(), rod.valleys.end(), [&](const auto& valley) {
+      return valley.first == static_cast<int>(o) && std::abs(valley.second - at) < kValley;
+    });
+  };
   const auto settled = [&](std::size_t o, double at) {
-    return late && rod.obstacles[o].rod >= 0 &&
+    return rod.obstacles[o].rod >= 0 &&
            std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
+             if (contact.role == ContactRole::kEcho || contact.surface != static_cast<int>(o))
+               return false;
              const double other = static_cast<double>(contact.cell) + contact.xi;
-             return contact.role != ContactRole::kEcho && contact.surface == static_cast<int>(o) &&
-                    std::abs(at - other) < 1;
+             const double way = std::abs(at - other);
+             return (late && way < 1) || (way < kValley && !open(o, other) && downhill(o, other, at));
            });
   };
   const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {

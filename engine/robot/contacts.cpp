@@ -185,7 +185,10 @@ bool RodContacts::revise(int round) {
     if (far_away(rod)) continue;
     scan(rod);
     std::vector<RodContact>& contacts = rod.side->contacts();
-    if (round == 0) rod.slides.clear();
+    if (round == 0) {
+      rod.slides.clear();
+      rod.valleys.clear();
+    }
     for (std::size_t i = 0; i < contacts.size(); ++i)
       if (contacts[i].role != ContactRole::kEcho &&
           follow(rod, contacts[i], rod.side->contact_state()[i], round < kHeld))

@@ -154,6 +154,9 @@ class RodContacts {
     std::vector<NodeState> begun;  ///< nodes when the step began
     std::vector<RodContact> before;
     std::vector<Slide> slides;  ///< of the present solve
+    /// Of the present solve: contacts, positions in cells, from which what is nearest goes back and
+    /// forth, and that therefore stay.
+    std::vector<std::pair<int, double>> valleys;
   };
 
   /// A change that revise() would like to make.
@@ -211,6 +214,7 @@ class RodContacts {
   bool held(const Rod& rod, std::size_t node) const;
   bool follow(Rod& rod, RodContact& contact, const ContactRows& rows, bool slides) const;
   bool slide(Rod& rod, RodContact& contact) const;
+  bool brackets(Rod& rod, const RodContact& contact, double by) const;
   void leap(Rod& rod, const RodContact& contact, double by, std::size_t& cell, double& xi) const;
   bool pulls_most(const Rod& rod, std::size_t contact) const;
   void review(std::size_t rod, std::vector<Change>& changes) const;

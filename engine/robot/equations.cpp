@@ -163,6 +163,11 @@ void Equations::set_relaxation(double drag) {
   prepare_rods();
 }
 
+void Equations::hold_marked(double drag) {
+  drag_ = drag;
+  prepare_rods();
+}
+
 void Equations::set_softness(double softness) {
   softness_ = softness;
   prepare_rods();

@@ -91,6 +91,8 @@ class Equations final : public Problem {
 
   void set_fraction(double fraction) override;
   void set_relaxation(double drag) override;
+  /// The same towards what was last marked.
+  void hold_marked(double drag);
   /// Lets rods stretch as easily as they bend. Legs of unequal length that start straight would
   /// otherwise carry axial forces hundreds of times their buckling load after the first Newton
   /// step.

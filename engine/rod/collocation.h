@@ -87,6 +87,7 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   Vec6 wrench_on_tip(const Port& tip) const override;
   void capture_gap(const Port& base, const Port& tip) override;
   void hold_gap(double fraction) override;
+  void set_curve(const RodCurve& curve) override;
   void bow(const Port& base, const Port& tip) override;
   void mark_positions() override;
   std::vector<Track*> tracks() override;
@@ -214,6 +215,7 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   const Vec13& end_of_piece(std::size_t station) const;
   void set_shape(const Pose& X_WBase, const std::function<Vec3(double)>& turn);
   void set_turned(const Pose& X_WBase, const std::function<Vec4(double)>& turned);
+  void set_rotated(const Pose& X_WBase, const std::function<Mat3(double)>& rotation);
   Vec3 compliance_bt(const SectionProperties& section) const;
   Vec3 compliance_se(const SectionProperties& section) const;
   void set_coefficients(const SectionProperties& section, PointModel& model) const;

@@ -41,15 +41,28 @@ void CollocationRod::set_turned(const Pose& X_WBase, const std::function<Vec4(do
   if (touch_) update_touch_nodes();
 }
 
+void CollocationRod::set_rotated(const Pose& X_WBase,
+                                 const std::function<Mat3(double)>& rotation) {
+  // of the two quaternions of a rotation the one next to the last
+  Vec4 last = Vec4::UnitX();
+  set_turned(X_WBase, [&](double s) {
+    const Vec4 q = quaternion_of(rotation(s));
+    last = q.dot(last) < 0 ? Vec4(-q) : q;
+    return last;
+  });
+}
+
+void CollocationRod::set_curve(const RodCurve& curve) {
+  const Pose base = curve.pose(0);
+  set_rotated(base, [&](double s) { return Mat3(base.R.transpose() * curve.pose(s).R); });
+  for (std::size_t j = 0; j < points_.size(); ++j)
+    points_[j].y.segment<3>(kP) = curve.pose(sites_[j].s).p;
+}
+
 void CollocationRod::set_unloaded(const Pose& X_WBase) {
   if (options_.along) {
-    // of the two quaternions of a rotation the one next to the last
-    Vec4 last = Vec4::UnitX();
-    set_turned(X_WBase, [&](double s) {
-      const Vec4 q = quaternion_of(options_.along->unloaded(s, forcing_.length).R);
-      last = q.dot(last) < 0 ? Vec4(-q) : q;
-      return last;
-    });
+    set_rotated(X_WBase,
+                [&](double s) { return options_.along->unloaded(s, forcing_.length).R; });
     return;
   }
   set_shape(X_WBase, [&](double s) { return Vec3(s * forcing_.length * section_.u_rest); });

@@ -37,6 +37,7 @@ class PlanarRod final : public RodModel, private TensionedRod {
   Vec6 wrench_on_tip(const Port& tip) const override;
   void capture_gap(const Port& base, const Port& tip) override;
   void hold_gap(double fraction) override;
+  void set_curve(const RodCurve& curve) override;
   void bow(const Port& base, const Port& tip) override;
   void mark_positions() override;
 

@@ -54,6 +54,37 @@ void PlanarRod::bow(const Port& base, const Port& tip) {
   }
 }
 
+void PlanarRod::set_curve(const RodCurve& curve) {
+  const auto place_at = [&](double s) {
+    const Pose X = curve.pose(s);
+    const Vec3 t = plane_.transpose() * X.R.col(2), p = plane_.transpose() * X.p;
+    return std::pair<double, Vec2>(std::atan2(t.y(), t.x()), p.head<2>());
+  };
+  const auto [theta, p] = place_at(0);
+  set_straight(theta, p);
+  const auto S = static_cast<std::size_t>(table_->stages);
+  double last = theta;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    PlanarNode& node = nodes_[k];
+    const auto [angle, there] = place_at(grid_[k]);
+    last += std::remainder(angle - last, 2 * std::numbers::pi);
+    node.theta = last;
+    node.c = std::cos(last);
+    node.s = std::sin(last);
+    node.p[0] = there.x();
+    node.p[1] = there.y();
+  }
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / S;
+    const double s = grid_[cell] + (grid_[cell + 1] - grid_[cell]) * table_->c[j % S];
+    const Pose X = curve.pose(s);
+    stages_[j].kappa = plane_.col(2).dot(X.R * curve.curvature(s));
+    const Vec2 there = plane_.leftCols<2>().transpose() * X.p;
+    std::copy_n(there.data(), 2, stages_[j].p);
+  }
+  evaluated_ = true;  // segments may begin at the nodes
+}
+
 void PlanarRod::mark_positions() {
   marked_.resize(stages_.size());
   for (std::size_t j = 0; j < stages_.size(); ++j)

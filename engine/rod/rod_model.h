@@ -22,6 +22,7 @@
 #include "engine/model/solver_spec.h"
 #include "engine/rod/contact.h"
 #include "engine/rod/field.h"
+#include "engine/rod/rod_curve.h"
 #include "engine/rod/rod_end.h"
 #include "engine/rod/shape.h"
 #include "engine/section/magnetic_sources.h"
@@ -161,6 +162,9 @@ class RodModel {
   /// fraction of it open.
   virtual void capture_gap(const Port& base, const Port& tip) = 0;
   virtual void hold_gap(double fraction) = 0;
+  /// A guess: the shape of a curve, which need not be an equilibrium. mark_positions() then means
+  /// the curve's.
+  virtual void set_curve(const RodCurve& curve) = 0;
   /// A guess for a rod longer than its chord: a single bow between its ends.
   virtual void bow(const Port& base, const Port& tip) = 0;
   virtual void mark_positions() = 0;  ///< origin of the relaxation drag

@@ -72,6 +72,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   Vec6 wrench_on_tip(const Port& tip) const override;
   void capture_gap(const Port& base, const Port& tip) override;
   void hold_gap(double fraction) override;
+  void set_curve(const RodCurve& curve) override;
   void bow(const Port& base, const Port& tip) override;
   void mark_positions() override;
   std::vector<Track*> tracks() override;

@@ -65,6 +65,23 @@ void ShootingRod::bow(const Port& base, const Port& tip) {
   }
 }
 
+void ShootingRod::set_curve(const RodCurve& curve) {
+  set_unloaded(curve.pose(0));
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const Pose X = curve.pose(grid_[k]);
+    Eigen::Map<RowMatrix>(nodes_[k].R) = X.R;
+    Eigen::Map<Vec3>(nodes_[k].p) = X.p;
+  }
+  const auto S = static_cast<std::size_t>(table_->stages);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const std::size_t cell = j / S;
+    const double s = grid_[cell] + (grid_[cell + 1] - grid_[cell]) * table_->c[j % S];
+    Eigen::Map<Vec3>(stages_[j].w) = curve.curvature(s);
+    Eigen::Map<Vec3>(stages_[j].p) = curve.pose(s).p;
+  }
+  evaluated_ = true;  // segments may begin at the nodes
+}
+
 void ShootingRod::mark_positions() {
   marked_.resize(stages_.size());
   for (std::size_t j = 0; j < stages_.size(); ++j)

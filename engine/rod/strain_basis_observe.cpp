@@ -54,6 +54,27 @@ void StrainRod::bow(const Port& base, const Port& tip) {
     }
 }
 
+void StrainRod::set_curve(const RodCurve& curve) {
+  set_unloaded(curve.pose(0));
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const Pose X = curve.pose(grid_[k]);
+    Eigen::Map<RowMatrix>(nodes_[k].R) = X.R;
+    Eigen::Map<Vec3>(nodes_[k].p) = X.p;
+  }
+  for (std::size_t e = 0; e < elements(); ++e)
+    for (Eigen::Index i = 0; i < rule_.points(); ++i) {
+      const VecX phi = rule_.phi.col(i);
+      const double s = grid_[e] + (grid_[e + 1] - grid_[e]) * rule_.gauss.points[i];
+      const Vec3 bent = curve.curvature(s) - rest_curvature(e, phi);
+      for (std::size_t a = 0; a < modes_.size(); ++a)
+        if (modes_[a].turns)
+          q_[e].row(static_cast<Eigen::Index>(a)) +=
+              rule_.gauss.weights[i] * modes_[a].axis.dot(bent) * phi.transpose();
+      points_[e * static_cast<std::size_t>(rule_.points()) + static_cast<std::size_t>(i)].p =
+          curve.pose(s).p;
+    }
+}
+
 void StrainRod::mark_positions() {
   marked_.clear();
   for (const StrainPoint& point : points_)

@@ -51,6 +51,7 @@ struct Simulation::Parts {
   std::string failure;
   Failure failure_kind = Failure::kNone;
   bool started = false;
+  bool shaped = false;  ///< some rod begins in a shape that the scene gives
   SolveReport report;
   RunStatistics statistics;
   Snapshot now, before;
@@ -68,6 +69,8 @@ struct Simulation::Parts {
     if (scene.simulation.mode != Mode::kStatic) end = scene.simulation.duration;
     breaks = break_times(scene, end);
     contacts.set_recovery_time(kRecovery * scene.max_step_size);
+    for (const RodSpec& rod : scene.rods)
+      shaped = shaped || !rod.start.empty();
   }
 
   bool free_only() const { return robot.rods.empty() && robot.bodies.empty(); }
@@ -108,8 +111,13 @@ struct Simulation::Parts {
     equations.mark_start();
     SolveOptions options = static_options(scene.solver);
     options.most_work = equations.work() + kMostStaticWork;
-    report = contacts.any() && equations.loads_on() ? load_gradually(contacts, equations, options)
-                                                    : solve_statics(equations, options);
+    report = shaped ? hold_shape(equations, options) : SolveReport{};
+    if (shaped && report.converged() && equations.loads_on())
+      report = relax_from_shape(contacts, equations, options);
+    else if (!shaped)
+      report = contacts.any() && equations.loads_on()
+                   ? load_gradually(contacts, equations, options)
+                   : solve_statics(equations, options);
     count(report);
     if (!report.converged())
       fail("no static equilibrium found" +
@@ -169,7 +177,8 @@ struct Simulation::Parts {
   bool start(const RobotUnknowns* neighbour);
   void begin();
 
-  /// Rods find their unloaded shape between bodies that stay where the scene puts them.
+  /// Rods find their unloaded shape, or the one that the scene gives them, between bodies that stay
+  /// where the scene puts them.
   bool assemble() {
     equations.hold_bodies(true);
     equations.set_loads(false);

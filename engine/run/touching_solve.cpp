@@ -82,4 +82,73 @@ SolveReport load_gradually(RodContacts& contacts, Equations& equations,
   return total;
 }
 
+namespace {
+
+/// In units of the robot's own stiffness: within 1/100 of the length a rod gives way to it.
+constexpr double kHold = 1e8;
+
+}  // namespace
+
+SolveReport hold_shape(Equations& equations, const SolveOptions& options) {
+  constexpr double kLeast = 1e4;
+  const RobotUnknowns given = equations.unknowns();
+  SolveReport total;
+  equations.hold_bodies(true);
+  equations.set_relaxation(kHold);
+  // too stiff springs resist what the ends demand
+  for (double hold = kHold; hold >= kLeast; hold *= 0.1) {
+    equations.set_unknowns(given);
+    equations.hold_marked(hold);
+    add(total, newton(equations, options));
+    if (total.converged()) break;
+  }
+  equations.set_relaxation(0);
+  equations.hold_bodies(false);
+  return total;
+}
+
+SolveReport relax_from_shape(RodContacts& contacts, Equations& equations,
+                             const SolveOptions& options) {
+  constexpr int kMostSteps = 1000;
+  // bodies stay where they are while rods come loose
+  constexpr double kNoDrag = 1e-3, kLoose = 1e3;
+  SolveOptions inner = options;
+  inner.tolerance = std::max(options.tolerance, 1e-6);
+  SolveReport total;
+  const auto settle = [&](const SolveOptions& settings) {
+    const SolveReport part =
+        settle_contacts(contacts, equations, settings, newton(equations, settings));
+    add(total, part);
+    return part.converged() && !contacts.leapt();
+  };
+  equations.accept_contacts();
+  double drag = kHold;
+  for (int step = 0; step < kMostSteps && drag <= kHold; ++step) {
+    const RobotUnknowns from = equations.unknowns();
+    equations.hold_bodies(drag > kLoose);
+    equations.evaluate();
+    equations.set_relaxation(drag);
+    contacts.begin_step();
+    if (!settle(inner)) {
+      equations.set_unknowns(from);
+      if (total.status == SolveStatus::kWorkLimit) break;
+      drag *= 8;
+      continue;
+    }
+    equations.accept_contacts();
+    drag *= 0.5;
+    if (drag > kNoDrag) continue;
+    equations.set_relaxation(0);
+    contacts.begin_step();
+    if (settle(options)) break;
+    equations.set_unknowns(from);
+    drag = 100 * kNoDrag;
+  }
+  equations.hold_bodies(false);
+  equations.set_relaxation(0);
+  if (total.converged() && drag > kNoDrag) total.status = SolveStatus::kIterationLimit;
+  total.stage = SolveStage::kRelaxation;
+  return total;
+}
+
 }  // namespace cprsim

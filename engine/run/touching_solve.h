@@ -20,4 +20,14 @@ SolveReport settle_contacts(RodContacts& contacts, Problem& problem, const Solve
 SolveReport load_gradually(RodContacts& contacts, Equations& equations,
                            const SolveOptions& options);
 
+/// Rods in the shapes they were given, as springs along them hold them there that are so stiff that
+/// what else acts, joints excepted, matters little.
+SolveReport hold_shape(Equations& equations, const SolveOptions& options);
+
+/// From there to the equilibrium that a rod in syrup comes to when it is let go: the springs become
+/// drag, which falls step by step (engine/solve/newton.h, relaxation()), and what touches on the way
+/// is touched.
+SolveReport relax_from_shape(RodContacts& contacts, Equations& equations,
+                             const SolveOptions& options);
+
 }  // namespace cprsim

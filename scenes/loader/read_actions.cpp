@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives, loads and initial velocities.
+// Drives, loads and how the scene begins.
 #include <array>
 #include <set>
 
 #include "scenes/loader/reading.h"
+#include "scenes/loader/start_table.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
 
@@ -292,10 +293,11 @@ void read_load(Reading& r, const Node& node, int scope, const std::vector<bool>&
   r.scene.loads.push_back(std::move(load));
 }
 
-void read_velocities(Reading& r, const Node& world) {
+void read_initial(Reading& r, const Node& world) {
   const Node* simulation = world.child("cprsim:simulation");
   const Node* initial = simulation ? simulation->child("initial") : nullptr;
   if (!initial) return;
+  read_start_table(r, *initial);
   for (const Node* node : initial->all("velocity")) {
     const Attribute& of = *node->attribute("of");
     const auto found = r.frames.find_outwards(0, of.value);
@@ -345,7 +347,7 @@ void read_actions(Reading& r, const Node& world) {
     for (const Node* load : node.all("cprsim:load"))
       read_load(r, *load, scope, fixed);
   });
-  read_velocities(r, world);
+  read_initial(r, world);
 }
 
 }  // namespace cprsim

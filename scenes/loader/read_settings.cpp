@@ -184,9 +184,14 @@ void read_solver(Reading& r, const Node& node) {
     in_range(r, *nonlinear, "tolerance", 1e-14, 1e-2);
     solver.residual_tolerance = optional_number(*nonlinear, "tolerance");
     solver.max_iterations = optional_count(*nonlinear, "max_iterations");
-    if (nonlinear->value("algorithm") == "newton") solver.algorithm = NonlinearAlgorithm::kNewton;
-    if (nonlinear->value("algorithm") == "levenberg_marquardt")
+    const std::string_view algorithm = nonlinear->value("algorithm");
+    if (algorithm == "newton") solver.algorithm = NonlinearAlgorithm::kNewton;
+    if (algorithm == "levenberg_marquardt" || algorithm == "dogleg")
       solver.algorithm = NonlinearAlgorithm::kLevenbergMarquardt;
+    if (algorithm == "dogleg")
+      r.report.note("W592", *nonlinear,
+                    "dogleg: the step within a trust region is found by Levenberg-Marquardt's "
+                    "damping, of which a dogleg is the approximation");
   }
   if (const Node* failure = node.child("on_failure")) {
     in_range(r, *failure, "retries", 0, 100);

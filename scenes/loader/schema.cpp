@@ -66,7 +66,6 @@ const char* availability(Status status) {
     case Status::kQuiet:
     case Status::kNoEffect:
       return "  (accepted, no effect)";
-    case Status::kLater:
     case Status::kRejected:
       return "  (not available in this version)";
     case Status::kOnlyFalse:

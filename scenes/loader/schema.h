@@ -42,12 +42,10 @@ enum class Status {
   kQuiet,      ///< accepted, no effect by the nature of this program: a note
   kNoEffect,   ///< accepted, no effect: one grouped warning
   kOnlyFalse,  ///< supported as long as it is false or 0
-  kLater,      ///< E520
   kRejected    ///< E520, a warning with --lax
 };
 
-/// An element under each of its parents. For kLater and kRejected `unit` says what is available
-/// instead.
+/// An element under each of its parents. For kRejected `unit` says what is available instead.
 struct ElementRule {
   const char* parents;  ///< ids of the parents, separated by blanks
   const char* name;

@@ -105,4 +105,15 @@ void complain_of_table(Reading& r, const Node& node, const Attribute* file,
   complain(r, node, file, "E110", "'" + name_of_file(node, file) + "', " + problem);
 }
 
+std::string check_fractions(const Table& table, std::size_t column) {
+  constexpr std::size_t kMostLines = 10'000;
+  if (table.rows.size() > kMostLines) return "more than " + std::to_string(kMostLines) + " lines";
+  for (std::size_t i = 1; i < table.rows.size(); ++i)
+    if (table.rows[i][column] <= table.rows[i - 1][column])
+      return "line " + std::to_string(table.lines[i]) + ": s does not ascend";
+  if (table.rows.front()[column] != 0 || table.rows.back()[column] != 1)
+    return "s does not go from 0 to 1: it is a fraction of the rod's length";
+  return "";
+}
+
 }  // namespace cprsim

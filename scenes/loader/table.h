@@ -31,4 +31,7 @@ std::optional<Table> read_table(Reading& reading, const Node& node, const Attrib
 void complain_of_table(Reading& reading, const Node& node, const Attribute* file,
                        const std::string& problem);
 
+/// Why the column does not hold fractions of a rod's length, from 0 to 1; nothing where it does.
+std::string check_fractions(const Table& table, std::size_t column);
+
 }  // namespace cprsim
