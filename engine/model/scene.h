@@ -3,11 +3,13 @@
 // the world or in a body. Filled by scenes/loader, frozen into a Robot by engine/robot/build.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/math/types.h"
+#include "engine/model/accuracy_goal.h"
 #include "engine/model/action_spec.h"
 #include "engine/model/body_spec.h"
 #include "engine/model/effects.h"
@@ -43,6 +45,7 @@ struct Scene {
   SimulationSpec simulation;
   std::optional<Vec3> planar_normal;  ///< motion across it only; unit, world axes
   SolverSpec solver;
+  std::optional<AccuracyGoal> accuracy_goal;  ///< of solver.accuracy, if not distances in metres
 
   std::vector<MeshSpec> meshes;
   std::vector<BodySpec> bodies;
@@ -64,5 +67,13 @@ struct Scene {
   std::vector<SweepSpec> sweeps;
   std::vector<ContactPair> watched;  ///< see watch_pairs()
 };
+
+/// m; 1 without rods.
+inline double longest_rod(const Scene& scene) {
+  double length = 0;
+  for (const RodSpec& rod : scene.rods)
+    length = std::max(length, rod.length);
+  return length > 0 ? length : 1;
+}
 
 }  // namespace cprsim

@@ -12,6 +12,7 @@
 #include "engine/rod/planar_immersion.h"
 #include "engine/rod/planar_tendons.h"
 #include "engine/rod/shooting.h"
+#include "engine/rod/strains_at_nodes.h"
 
 namespace cprsim {
 
@@ -129,6 +130,7 @@ class PlanarRod final : public RodModel, private TensionedRod {
   void start_columns(const Place& base, double* Y) const;
   void apply_load_columns(std::size_t node, const PlanarNode& state, double* Y) const;
   double weight_of(std::size_t stage) const;
+  StrainsAtNodes strains_at_nodes() const;
   bool sweep_columns(const Place& base);
   void orthonormalize(std::size_t segment, const PlanarNode& reached, double* Y);
   void close_tip(const Place& tip, const double* Y, CondensedRod& out) const;

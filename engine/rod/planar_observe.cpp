@@ -10,18 +10,6 @@
 #include "engine/rod/planar.h"
 
 namespace cprsim {
-namespace {
-
-/// Curvature, stretch and shear, linear through the stage values of a cell, at fraction x of it.
-Vec3 strain_along(const PlanarStage* stages, const ArcTableau& table, double x) {
-  const int last = table.stages - 1;
-  const auto strain = [&](int j) { return Vec3(stages[j].kappa, stages[j].v[0], stages[j].v[1]); };
-  if (last == 0 || table.c[last] == table.c[0]) return strain(0);
-  const double f = (x - table.c[0]) / (table.c[last] - table.c[0]);
-  return (1 - f) * strain(0) + f * strain(last);
-}
-
-}  // namespace
 
 void PlanarRod::capture_gap(const Port& base, const Port& tip) {
   // a free end has no joint that could gape
@@ -262,13 +250,23 @@ void PlanarRod::visit(Archive& archive) {
   if (tendons_) tendons_->in_space().visit(archive);
 }
 
+// Curvature, stretch and shear.
+StrainsAtNodes PlanarRod::strains_at_nodes() const {
+  return {*table_, grid_, [this](std::size_t j) {
+            const PlanarStage& stage = stages_[j];
+            Vec6 strain = Vec6::Zero();
+            strain.head<3>() << stage.kappa, stage.v[0], stage.v[1];
+            return strain;
+          }};
+}
+
 RodSample PlanarRod::observe() const {
   RodSample sample;
   sample.length = forcing_.length;
   sample.radius = section_.half_width;
   sample.points.resize(nodes_.size());
-  const auto S = static_cast<std::size_t>(table_->stages);
   const auto n = static_cast<Eigen::Index>(stages_.size());
+  const StrainsAtNodes strains = strains_at_nodes();
   const Mat3 to_section = offset_.transpose();
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     RodPoint& point = sample.points[k];
@@ -282,18 +280,7 @@ RodSample PlanarRod::observe() const {
     point.moment = node.m * plane_.col(2);
     point.velocity =
         plane_.leftCols<2>() * track_.v.segment<2>(2 * (n + static_cast<Eigen::Index>(k)));
-    // strains from both neighbouring cells
-    Vec3 strain = Vec3::Zero();
-    double sides = 0;
-    if (k > 0) {
-      strain += strain_along(&stages_[(k - 1) * S], *table_, 1);
-      sides += 1;
-    }
-    if (k + 1 < nodes_.size()) {
-      strain += strain_along(&stages_[k * S], *table_, 0);
-      sides += 1;
-    }
-    strain /= sides;
+    const Vec6 strain = strains(k);
     point.curvature = strain[0] * to_section.col(2);
     point.shear_stretch = to_section * Vec3(strain[1], strain[2], 0);
   }
@@ -373,7 +360,7 @@ RodEnergy PlanarRod::energy() const {
   }
   // energy that enters per unit feed, see ShootingRod::energy
   const PlanarNode& base = nodes_.front();
-  const Vec3 strain = strain_along(stages_.data(), *table_, 0);
+  const Vec3 strain = strains_at_nodes()(0).head<3>();
   const double n_t = base.c * base.n[0] + base.s * base.n[1],
                n_d = base.c * base.n[1] - base.s * base.n[0];
   e.feed_power = density(strain) - n_t * strain[1] - n_d * strain[2] - base.m * strain[0] -

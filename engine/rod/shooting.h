@@ -27,6 +27,7 @@
 #include "engine/rod/immersion.h"
 #include "engine/rod/rod_disks.h"
 #include "engine/rod/rod_model.h"
+#include "engine/rod/strains_at_nodes.h"
 #include "engine/rod/rod_tendons.h"
 #include "engine/rod/tendon_border.h"
 #include "engine/section/along.h"
@@ -187,6 +188,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   /// Length that a stage stands for, m.
   double weight_of(std::size_t stage) const;
+  StrainsAtNodes strains_at_nodes() const;
 
   /// What of the model is the cell's.
   void enter_cell(std::size_t cell) {

@@ -18,16 +18,6 @@ Eigen::Map<const Vec3> vec(const double* p) {
   return Eigen::Map<const Vec3>(p);
 }
 
-/// Linear through the stage values of a cell, at fraction x of it.
-Vec3 along_cell(const CellStage* stages, const ArcTableau& table,
-                const double (CellStage::*value)[3], double x) {
-  const int last = table.stages - 1;
-  const Vec3 a = vec(stages[0].*value);
-  if (last == 0 || table.c[last] == table.c[0]) return a;
-  const double f = (x - table.c[0]) / (table.c[last] - table.c[0]);
-  return (1 - f) * a + f * vec(stages[last].*value);
-}
-
 }  // namespace
 
 void ShootingRod::capture_gap(const Port& base, const Port& tip) {
@@ -293,13 +283,21 @@ void ShootingRod::visit(Archive& archive) {
   if (touch_) touch_->visit(archive);
 }
 
+StrainsAtNodes ShootingRod::strains_at_nodes() const {
+  return {*table_, grid_, [this](std::size_t j) {
+            Vec6 strain;
+            strain << vec(stages_[j].u), vec(stages_[j].v);
+            return strain;
+          }};
+}
+
 RodSample ShootingRod::observe() const {
   RodSample sample;
   sample.length = forcing_.length;
   sample.radius = section_.half_width;
   sample.points.resize(nodes_.size());
-  const auto S = static_cast<std::size_t>(table_->stages);
   const auto n_stages = static_cast<Eigen::Index>(stages_.size());
+  const StrainsAtNodes strains = strains_at_nodes();
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     RodPoint& point = sample.points[k];
     const NodeState& node = nodes_[k];
@@ -309,22 +307,10 @@ RodSample ShootingRod::observe() const {
     point.force = force_of(node);
     point.moment = moment_of(node);
     point.velocity = track_.v.segment<3>(3 * (n_stages + static_cast<Eigen::Index>(k)));
-    // strains from both neighbouring cells
-    Vec3 u = Vec3::Zero(), v = Vec3::Zero();
-    double sides = 0;
-    if (k > 0) {
-      u += along_cell(&stages_[(k - 1) * S], *table_, &CellStage::u, 1);
-      v += along_cell(&stages_[(k - 1) * S], *table_, &CellStage::v, 1);
-      sides += 1;
-    }
-    if (k + 1 < nodes_.size()) {
-      u += along_cell(&stages_[k * S], *table_, &CellStage::u, 0);
-      v += along_cell(&stages_[k * S], *table_, &CellStage::v, 0);
-      sides += 1;
-    }
-    point.curvature = u / sides;
+    const Vec6 strain = strains(k);
+    point.curvature = strain.head<3>();
     point.rest_curvature = rest_curvature(grid_[k]) + forcing_.heat.curvature;
-    point.shear_stretch = v / sides;
+    point.shear_stretch = strain.tail<3>();
   }
   return sample;
 }
@@ -396,8 +382,8 @@ RodEnergy ShootingRod::energy() const {
   // Energy that enters per unit feed: the base section's traction works on the inflow, which brings
   // strain energy and weight along.
   const NodeState& base = nodes_.front();
-  const Vec3 u = along_cell(stages_.data(), *table_, &CellStage::u, 0);
-  const Vec3 v = along_cell(stages_.data(), *table_, &CellStage::v, 0);
+  const Vec6 strain = strains_at_nodes()(0);
+  const Vec3 u = strain.head<3>(), v = strain.tail<3>();
   const Vec3 n_S = rotation_of(base).transpose() * force_of(base),
              m_S = rotation_of(base).transpose() * moment_of(base);
   const Vec3 bent = u - section_.u_rest - forcing_.heat.curvature;

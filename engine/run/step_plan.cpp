@@ -7,13 +7,6 @@
 namespace cprsim {
 namespace {
 
-double longest_rod(const Scene& scene) {
-  double length = 0;
-  for (const RodSpec& rod : scene.rods)
-    length = std::max(length, rod.length);
-  return length > 0 ? length : 1;
-}
-
 /// Where a scene does not say: below this error, over the rod's length, the fourth order is the
 /// cheaper one (docs/accuracy.md).
 SchemeKind scheme_for(const Scene& scene) {

@@ -148,7 +148,34 @@ std::vector<Channel> channels_of(Reading& r, const Node& node, const Attribute* 
   return channels;
 }
 
+namespace {
+
+// Formulas choose from metres: a first guess, where it is not about metres.
+void read_accuracy_goal(Reading& r, const Node& world) {
+  constexpr double kFirstGuess = 1e-4;  // of the longest rod
+  const Node* physics = chosen_physics(world);
+  const Node* solver = physics ? physics->child("cprsim:solver") : nullptr;
+  const Node* node = solver ? solver->child("accuracy") : nullptr;
+  if (!node || !r.scene.solver.accuracy) return;
+  AccuracyGoal goal;
+  goal.error = *r.scene.solver.accuracy;
+  goal.relative = parse_bool(node->value("relative")).value_or(false);
+  if (const Attribute* of = node->attribute("of")) {
+    goal.of = of->value;
+    goal.channels = channels_of(r, *node, of);
+  }
+  if (!goal.relative && goal.of.empty()) return;
+  const bool metres = !goal.channels.empty() && goal.channels.front().unit == "m";
+  if (goal.relative || !metres)
+    r.scene.solver.accuracy =
+        std::clamp((goal.relative ? goal.error : kFirstGuess) * longest_rod(r.scene), 1e-12, 1.0);
+  r.scene.accuracy_goal = std::move(goal);
+}
+
+}  // namespace
+
 void read_outputs(Reading& r, const Node& world) {
+  read_accuracy_goal(r, world);
   for (const Node* node : world.all("cprsim:video"))
     read_video(r, *node);
   for (const Node* node : world.all("cprsim:record"))

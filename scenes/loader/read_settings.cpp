@@ -33,6 +33,13 @@ std::string mean(const std::string& name) {
   return name.empty() ? name : "did you mean " + name + "?";
 }
 
+const Node* chosen_physics(const Node& world) {
+  const std::vector<const Node*> all = world.all("physics");
+  for (const Node* node : all)
+    if (parse_bool(node->value("default")).value_or(false)) return node;
+  return all.empty() ? nullptr : all.front();
+}
+
 namespace {
 
 constexpr int kMostPoints = 10'000;
@@ -41,13 +48,6 @@ constexpr int kHighestOrder = 40, kMostElements = 400;
 // of splines: below, positions and forces would not be smooth; above, engine/math/bspline.h ends
 constexpr int kLowestDegree = 2, kHighestDegree = 8;
 constexpr double kMostSteps = 1e8;
-
-const Node* chosen_physics(const Node& world) {
-  const std::vector<const Node*> all = world.all("physics");
-  for (const Node* node : all)
-    if (parse_bool(node->value("default")).value_or(false)) return node;
-  return all.empty() ? nullptr : all.front();
-}
 
 std::optional<int> optional_count(const Node& node, std::string_view key) {
   const Attribute* a = node.attribute(key);
@@ -175,8 +175,10 @@ void read_solver(Reading& r, const Node& node) {
   solver.method = method_attribute(node).value_or(Method::kAuto);
   if (const Node* accuracy = node.child("accuracy")) {
     solver.accuracy = number_of(accuracy, 0);
-    if (*solver.accuracy < 1e-12 || *solver.accuracy > 1)
-      r.report.bad_text("E306", *accuracy, "accuracy lies between 1e-12 and 1 m");
+    const bool distances = !accuracy->attribute("of");
+    if (*solver.accuracy < 1e-12 || (distances && *solver.accuracy > 1))
+      r.report.bad_text("E306", *accuracy, distances ? "accuracy lies between 1e-12 and 1 m"
+                                                     : "accuracy is 1e-12 or more");
   }
   if (const Node* space = node.child("space")) read_space(r, *space);
   if (const Node* time = node.child("time")) read_time(r, *time);

@@ -64,6 +64,9 @@ void check_planar(Reading& reading, const Node& world);  // that nothing leaves 
 std::optional<int> find_tendon(const Reading& reading, int scope, std::string_view name,
                                bool only_here = false);
 
+/// Of several <physics> the default one, else the first; null: none.
+const Node* chosen_physics(const Node& world);
+
 /// Channels that an attribute (none: the element's text) names; an error if there is none.
 std::vector<Channel> channels_of(Reading& reading, const Node& node, const Attribute* attribute);
 

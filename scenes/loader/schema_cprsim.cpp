@@ -178,7 +178,7 @@ std::vector<ElementRule> run_elements() {
       {"physics", "cprsim:solver", "", T::kGroup, "", '?', S::kSupported,
        "How the rods are solved."},
       {"cprsim:solver", "accuracy", "", T::kPositive, "m", '?', S::kSupported,
-       "Tip error asked for."},
+       "Error asked for: of links and rods, or of a channel in its own unit."},
       {"cprsim:solver", "space", "", T::kEmpty, "", '?', S::kSupported, "Along the rods."},
       {"cprsim:solver", "time", "", T::kEmpty, "", '?', S::kSupported, "In time."},
       {"cprsim:solver", "nonlinear", "", T::kEmpty, "", '?', S::kSupported, "Nonlinear equations."},

@@ -90,6 +90,7 @@ void set_solver_setting(Node& world, std::string_view name, const std::string& v
   if (name == "step") set_text(physics_of(world).need("max_step_size"), value);
   Node& node = *setting->element == '\0' ? solver : solver.need(setting->element);
   if (*setting->attribute == '\0') {
+    node.attributes.clear();
     set_text(node, value);
     return;
   }

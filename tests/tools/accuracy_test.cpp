@@ -47,6 +47,62 @@ TEST_F(Accuracy, IsKeptByEquilibria) {
   }
 }
 
+// Its ends are held: what there is to be wrong is between them.
+TEST_F(Accuracy, CountsBetweenTheEndsOfARod) {
+  constexpr double kDepth = -0.19492431137557384;  // scenes/rods/arch.xml
+  const std::string arch = shipped("scenes/rods/arch.xml") + " --no-video -q ";
+  for (const char* asked : {"1e-3", "1e-5", "1e-7"}) {
+    ASSERT_LE(run("run " + arch + "--accuracy " + asked + " -o asked").code, 1);
+    const Json report = json("asked/run.json");
+    EXPECT_TRUE(report["accuracy"]["reached"]);
+    EXPECT_GT(report["accuracy"]["estimate"].get<double>(), 0);
+    for (const Json& check : report["expectations"][0]["checks"]) {
+      if (check.value("channel", "").ends_with("position.z")) {
+        EXPECT_NEAR(check["value"].get<double>(), kDepth, std::stod(asked));
+      }
+    }
+  }
+}
+
+// The moment at the clamp, by its largest value, and positions, by the length of the rod.
+TEST_F(Accuracy, MayBeRelativeAndOfAChannel) {
+  const std::string scene = contents(shipped("scenes/mechanics/released_rod.xml"));
+  const std::size_t from = scene.find("<cprsim:solver"), to = scene.find("</physics>");
+  const auto asking = [&](const std::string& accuracy) {
+    std::string text = scene;
+    text.replace(from, to - from, "<cprsim:solver method=\"auto\">" + accuracy + "</cprsim:solver>");
+    return with(text, "<channel>energy.*</channel>",
+                "<channel>wire::rod.base.wrench.moment.y</channel>");
+  };
+  spill(folder_ / "tight.xml", asking("<space points=\"14\"/><time scheme=\"esdirk43\" "
+                                      "tolerance=\"1e-10\"/>"));
+  ASSERT_LE(run("run tight.xml --duration 0.1 --no-video -q -o tight").code, 1);
+  const auto error = [&](const std::string& of) {
+    const Answer answer = run("compare asked tight/released_rod.csv --json -o c");
+    const Json report = Json::parse(answer.out);
+    for (const Json& quantity : report["quantities"])
+      if (quantity["name"].get<std::string>().find(of) != std::string::npos)
+        return quantity["max"].get<double>();
+    ADD_FAILURE() << "no " << of << " in " << answer.out;
+    return 0.;
+  };
+  constexpr double kLength = 0.4, kMoment = 0.39;  // under 1 N and its weight
+
+  spill(folder_ / "asked.xml", asking("<accuracy relative=\"true\">1e-4</accuracy>"));
+  ASSERT_LE(run("run asked.xml --duration 0.1 --no-video -q -o asked").code, 1);
+  EXPECT_TRUE(json("asked/run.json")["accuracy"]["reached"]);
+  EXPECT_EQ(json("asked/run.json")["accuracy"]["unit"], "of the longest rod");
+  EXPECT_LT(error("tip.position"), 1e-4 * kLength);
+
+  const std::string moment = "wire::rod.base.wrench.moment.y";
+  spill(folder_ / "asked.xml",
+        asking("<accuracy of=\"" + moment + "\" relative=\"true\">1e-3</accuracy>"));
+  ASSERT_LE(run("run asked.xml --duration 0.1 --no-video -q -o asked").code, 1);
+  EXPECT_TRUE(json("asked/run.json")["accuracy"]["reached"]);
+  EXPECT_EQ(json("asked/run.json")["accuracy"]["unit"], "of " + moment);
+  EXPECT_LT(error("moment"), 1e-3 * kMoment);
+}
+
 TEST_F(Accuracy, ThatTheSceneDoesNotLeaveRoomForIsSaidNotToBeReached) {
   const Answer answer =
       run("run " + shipped("scenes/mechanics/released_rod.xml") +

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/quiet_run.h"
@@ -12,19 +13,40 @@ namespace cprsim {
 namespace {
 
 constexpr int kInstants = 200;
+constexpr int kPlaces = 8;  // along a rod
 constexpr double kLooser = 10;  // asked of the pilot
 constexpr double kShare = 3;    // (1)
+constexpr double kLeastOrder = 2. / 3;  // kappa of (1)
 constexpr int kMostRuns = 5;
 constexpr double kLeastAccuracy = 1e-12;  // m; what a scene may ask for
 constexpr double kRoundOff = 1e-9;        // of a step: times are sums of rounded steps
 
-/// What every rod is cut into: pieces, and the order on them.
-std::vector<std::pair<int, int>> resolution_of(const Scene& scene) {
-  std::vector<std::pair<int, int>> all;
+std::vector<Resolution> resolution_of(const Scene& scene) {
+  std::vector<Resolution> all;
   const auto simulation = build_simulation(scene);
   for (const RodFacts& rod : simulation->facts().rods)
-    all.emplace_back(rod.elements, rod.order);
+    all.push_back({rod.method, rod.elements, rod.order});
   return all;
+}
+
+/// Every rod into half as many pieces again, of an order more, or into two thirds and one less. A
+/// resolution also says which method it is for: each rod keeps its own.
+Scene cut(Scene scene, const std::vector<Resolution>& rods, bool finer) {
+  const auto pick = [&](std::optional<int>& of_all, int n) {
+    of_all = !of_all ? n : finer ? std::max(*of_all, n) : std::min(*of_all, n);
+  };
+  SolverSpec& solver = scene.solver;
+  solver.points.reset();
+  solver.elements.reset();
+  solver.order.reset();
+  for (std::size_t i = 0; i < rods.size(); ++i) {
+    const auto& [method, elements, order] = rods[i];
+    scene.rods[i].method = method;
+    pick(method == Method::kShooting ? solver.points : solver.elements,
+         finer ? (3 * elements + 1) / 2 : std::max(1, elements * 2 / 3));
+    if (method == Method::kStrain) pick(solver.order, std::max(1, order + (finer ? 1 : -1)));
+  }
+  return scene;
 }
 
 /// Steps of this scheme are what the scene says, whatever the error.
@@ -46,6 +68,15 @@ Scene looser(const Scene& scene) {
   return pilot;
 }
 
+/// Of what is asked for, with what it is about.
+std::string unit_of(const Scene& scene) {
+  const auto& goal = scene.accuracy_goal;
+  if (!goal) return "m";
+  if (goal->of.empty()) return "of the longest rod";
+  if (goal->relative) return "of " + goal->of;
+  return (goal->channels.empty() ? "" : goal->channels.front().unit + " ") + "in " + goal->of;
+}
+
 std::string fixed_by(const Scene& scene) {
   const SolverSpec& solver = scene.solver;
   std::string text;
@@ -64,15 +95,12 @@ std::string fixed_by(const Scene& scene) {
 
 double residual_for(const Scene& scene) {
   constexpr double kShareOfError = 1e-2, kDefault = 1e-9, kLeast = 1e-13;
-  double length = 0;
-  for (const RodSpec& rod : scene.rods)
-    length = std::max(length, rod.length);
-  return std::clamp(kShareOfError * *scene.solver.accuracy / std::max(length, 1e-3), kLeast,
-                    kDefault);
+  return std::clamp(kShareOfError * *scene.solver.accuracy / longest_rod(scene), kLeast, kDefault);
 }
 
-double estimated_error(const PositionTrack& looser, const PositionTrack& track) {
-  return farthest(looser, track) / kShare;
+double estimated_error(const AnswerTrack& looser, const AnswerTrack& track, double times) {
+  const auto of = [](double ratio) { return std::pow(ratio, kLeastOrder) - 1; };
+  return farthest(looser, track) / (kShare * of(std::max(times, kLooser)) / of(kLooser));
 }
 
 void free_settings(SolverSpec& solver) {
@@ -85,44 +113,59 @@ void free_settings(SolverSpec& solver) {
   solver.residual_tolerance.reset();
 }
 
-PositionTrack::PositionTrack(const Scene& scene)
-    : end_(scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration) {}
+AnswerTrack::AnswerTrack(const Scene& scene)
+    : end_(scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration),
+      goal_(scene.accuracy_goal) {
+  if (!goal_) return;
+  if (!goal_->channels.empty()) reader_.emplace(scene, goal_->channels);
+  if (!goal_->relative) return;
+  size_ = goal_->channels.empty() ? longest_rod(scene) : 0;
+}
 
-void PositionTrack::record(const Snapshot& snapshot) {
-  std::vector<Vec3>& all = positions_.emplace_back();
+void AnswerTrack::record(const Snapshot& snapshot) {
+  std::vector<Vec3>& all = answers_.emplace_back();
+  if (reader_) {
+    for (const double value : reader_->read(snapshot)) {
+      all.emplace_back(value, 0, 0);
+      if (goal_->relative) size_ = std::max(size_, std::abs(value));
+    }
+    return;
+  }
   for (const BodySample& body : snapshot.bodies)
     all.push_back(body.X_WB.p);
   for (const RodSample& rod : snapshot.rods)
-    all.push_back(rod.points.back().position);
+    for (int k = 1; k <= kPlaces; ++k)
+      all.push_back(point_at(rod, static_cast<double>(k) / kPlaces).position);
 }
 
-void PositionTrack::begin(const Snapshot& start) {
-  positions_.clear();
+void AnswerTrack::begin(const Snapshot& start) {
+  answers_.clear();
   record(start);
 }
 
-void PositionTrack::step(const Snapshot& before, const Snapshot& now) {
+void AnswerTrack::step(const Snapshot& before, const Snapshot& now) {
   const double slack = kRoundOff * (now.time - before.time);
-  for (auto k = positions_.size(); k <= kInstants; ++k) {
+  for (auto k = answers_.size(); k <= kInstants; ++k) {
     const double t = end_ * static_cast<double>(k) / kInstants;
     if (t > now.time + slack) return;
     record(interpolate(before, now, std::min(t, now.time)));
   }
 }
 
-double farthest(const PositionTrack& a, const PositionTrack& b) {
+double farthest(const AnswerTrack& a, const AnswerTrack& b) {
   double most = 0;
-  for (std::size_t k = 0; k < std::min(a.positions_.size(), b.positions_.size()); ++k)
-    for (std::size_t i = 0; i < std::min(a.positions_[k].size(), b.positions_[k].size()); ++i)
-      most = std::max(most, (a.positions_[k][i] - b.positions_[k][i]).norm());
-  return most;
+  for (std::size_t k = 0; k < std::min(a.answers_.size(), b.answers_.size()); ++k)
+    for (std::size_t i = 0; i < std::min(a.answers_[k].size(), b.answers_[k].size()); ++i)
+      most = std::max(most, (a.answers_[k][i] - b.answers_[k][i]).norm());
+  return b.size_ > 0 ? most / b.size_ : most;
 }
 
 AccuracyControl::AccuracyControl(const Scene& scene)
     : scene_(scene), asked_(scene.solver.accuracy) {
   track_.emplace(scene_);
   if (!asked_) return;
-  report_.asked = *asked_;
+  report_.asked = scene.accuracy_goal ? scene.accuracy_goal->error : *asked_;
+  report_.unit = unit_of(scene);
   report_.held_back = fixed_by(scene);
   residual_is_ours_ = !scene.solver.residual_tolerance;
   if (residual_is_ours_) scene_.solver.residual_tolerance = residual_for(scene_);
@@ -132,29 +175,39 @@ void AccuracyControl::fly_pilot(const std::function<bool()>& stop) {
   Scene scene = looser(scene_);
   // at its coarsest the formula gives the pilot no fewer pieces, and no error would be seen
   const auto resolution = resolution_of(scene_);
-  if (!resolution.empty() && resolution == resolution_of(scene)) {
-    const auto [elements, order] = *std::min_element(resolution.begin(), resolution.end());
-    scene.solver.points = scene.solver.elements = std::max(1, elements * 2 / 3);
-    scene.solver.order = std::max(1, order - 1);
-  }
+  if (!resolution.empty() && resolution == resolution_of(scene)) scene = cut(scene, resolution, false);
   pilot_.emplace(scene);
   const QuietRun run = run_quietly(scene, onlooker(*pilot_), stop);
   ++report_.runs;
   report_.evaluations += run.statistics.section_evaluations;
+  // so coarse that it came to nothing: the next run will be another one's pilot
+  if (run.status != RunStatus::kDone) pilot_.reset();
+}
+
+// Where the formula gives no more pieces for less error, what is left of it along the rods would not
+// be seen.
+void AccuracyControl::cut_finer(const std::vector<Resolution>& last) {
+  if (!last.empty() && resolution_of(scene_) == last) scene_ = cut(scene_, last, true);
 }
 
 bool AccuracyControl::refine(long evaluations) {
   constexpr double kAim = 0.3;  // of what is asked for
   ++report_.runs;
-  report_.estimate = estimated_error(*pilot_, *track_);
+  report_.estimate = pilot_ ? estimated_error(*pilot_, *track_, times_)
+                            : std::numeric_limits<double>::infinity();
   const bool at_the_end = *scene_.solver.accuracy <= kLeastAccuracy;
   const bool settled =
       report_.reached() || at_the_end || report_.runs >= kMostRuns || !report_.held_back.empty();
   if (settled) return false;
   report_.evaluations += evaluations;
-  const double factor = std::clamp(kAim * *asked_ / report_.estimate, 1e-3, 1 / kLooser);
-  scene_.solver.accuracy = std::max(kLeastAccuracy, factor * *scene_.solver.accuracy);
+  const auto last = resolution_of(scene_);
+  const double factor =
+      pilot_ ? std::clamp(kAim * report_.asked / report_.estimate, 1e-3, 1 / kLooser) : 1 / kLooser;
+  const double before = *scene_.solver.accuracy;
+  scene_.solver.accuracy = std::max(kLeastAccuracy, factor * before);
+  times_ = before / *scene_.solver.accuracy;
   if (residual_is_ours_) scene_.solver.residual_tolerance = residual_for(scene_);
+  cut_finer(last);
   pilot_ = std::move(track_);
   track_.emplace(scene_);
   return true;

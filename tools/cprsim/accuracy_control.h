@@ -3,6 +3,7 @@
 // The run is compared with a looser one, its pilot, for which errors of 10 times the size are
 // asked: with errors proportional to a^kappa, kappa >= 2/3 for every scheme that adapts,
 //   d = max |x_pilot - x|,   e <= d / (10^kappa - 1) < d / 3                                (1)
+// (with r instead of 10 where errors of r times the size were asked of the pilot).
 // Where (1) exceeds what is asked for, a smaller error is asked for in secret and the run made
 // again, with the last one as its pilot.
 #pragma once
@@ -13,15 +14,17 @@
 #include <vector>
 
 #include "engine/model/scene.h"
+#include "engine/run/observe.h"
 #include "tools/sinks/sink.h"
 
 namespace cprsim {
 
-/// Where links and tips of rods are at evenly spaced instants. Between its nodes a rod is
-/// interpolated, which errs by the fourth power of their distance and is no error of the solution.
-class PositionTrack : public Sink {
+/// What an accuracy is about, at evenly spaced instants: where links are, and rods at eighths of
+/// their length, or the channels that the scene names. What is interpolated between nodes counts:
+/// it is what a scene gets to see.
+class AnswerTrack : public Sink {
  public:
-  explicit PositionTrack(const Scene& scene);
+  explicit AnswerTrack(const Scene& scene);
 
   void begin(const Snapshot& start) override;
   void step(const Snapshot& before, const Snapshot& now) override;
@@ -30,18 +33,21 @@ class PositionTrack : public Sink {
 
   std::vector<WrittenFile> files() const override { return {}; }
 
-  /// Largest distance at instants that both have reached, m.
-  friend double farthest(const PositionTrack& a, const PositionTrack& b);
+  /// Largest distance at instants that both have reached: in m, or as AccuracyGoal says.
+  friend double farthest(const AnswerTrack& a, const AnswerTrack& b);
 
  private:
   void record(const Snapshot& snapshot);
 
   double end_;
-  std::vector<std::vector<Vec3>> positions_;  ///< by instant
+  std::optional<AccuracyGoal> goal_;
+  std::optional<ChannelReader> reader_;
+  double size_ = 1;                         ///< what is relative is relative to
+  std::vector<std::vector<Vec3>> answers_;  ///< by instant; of a channel (value, 0, 0)
 };
 
-/// (1) from two runs of which the first is made for errors of at least ten times the size, m.
-double estimated_error(const PositionTrack& looser, const PositionTrack& track);
+/// (1) from two runs of which the first is made for errors `times` the size, 10 at least.
+double estimated_error(const AnswerTrack& looser, const AnswerTrack& track, double times = 10);
 
 /// Takes away what a scene says of step, tolerance, scheme and resolution; its method stays.
 void free_settings(SolverSpec& solver);
@@ -52,13 +58,22 @@ double residual_for(const Scene& scene);
 
 /// What came of an accuracy that was asked for.
 struct AccuracyReport {
-  double asked = 0;       ///< m
-  double estimate = 0;    ///< (1), m
+  double asked = 0;
+  double estimate = 0;    ///< (1)
+  std::string unit;       ///< of both, with what they are about: "m", "of the longest rod"
   int runs = 0;           ///< all told, pilot and last one included
   long evaluations = 0;   ///< section evaluations of those before the last
   std::string held_back;  ///< what the scene fixes and accuracy therefore does not choose
 
   bool reached() const { return estimate <= asked; }
+};
+
+/// What a rod is cut into.
+struct Resolution {
+  Method method = Method::kShooting;
+  int elements = 0, order = 0;
+
+  bool operator==(const Resolution&) const = default;
 };
 
 class AccuracyControl {
@@ -75,7 +90,7 @@ class AccuracyControl {
   const Scene& scene() const { return scene_; }
 
   /// Sees that run.
-  PositionTrack& track() { return *track_; }
+  AnswerTrack& track() { return *track_; }
 
   /// After a run that got to its end: whether another one is needed, which scene() then is.
   bool refine(long evaluations);
@@ -83,10 +98,13 @@ class AccuracyControl {
   const AccuracyReport& report() const { return report_; }
 
  private:
+  void cut_finer(const std::vector<Resolution>& last);
+
   Scene scene_;
   std::optional<double> asked_;
   bool residual_is_ours_ = false;  ///< the scene does not say how far equations are solved
-  std::optional<PositionTrack> pilot_, track_;
+  double times_ = 10;  ///< the error of the last run that was asked of its pilot
+  std::optional<AnswerTrack> pilot_, track_;
   AccuracyReport report_;
 };
 

@@ -21,6 +21,7 @@ constexpr double kApart = 9.9;  // of the accuracies of two runs whose distance 
 RealTimeSearch::RealTimeSearch(const Scene& scene, double factor) : scene_(scene) {
   report_.asked = factor;
   free_settings(scene_.solver);
+  scene_.accuracy_goal.reset();
   for (const RodSpec& rod : scene.rods)
     length_ = std::max(length_, rod.length);
 }
@@ -36,7 +37,7 @@ Scene RealTimeSearch::with_accuracy(double accuracy) const {
 std::optional<RealTimeSearch::Trial> RealTimeSearch::attempt(double accuracy,
                                                              const std::function<bool()>& stop) {
   const Scene scene = with_accuracy(accuracy);
-  Trial trial{accuracy, 0, PositionTrack(scene)};
+  Trial trial{accuracy, 0, AnswerTrack(scene)};
   const double most = scene.simulation.duration / (kReserve * report_.asked);
   const Stopwatch watch;
   bool late = false;

@@ -43,7 +43,7 @@ class RealTimeSearch {
  private:
   struct Trial {
     double accuracy = 0, factor = 0;
-    PositionTrack track;
+    AnswerTrack track;
   };
 
   Scene with_accuracy(double accuracy) const;

@@ -230,6 +230,7 @@ std::string to_json(const Scene& scene, const RunReport& report) {
   if (report.accuracy) {
     const AccuracyReport& accuracy = *report.accuracy;
     json["accuracy"] = {{"asked", accuracy.asked},
+                        {"unit", accuracy.unit},
                         {"estimate", accuracy.estimate},
                         {"reached", accuracy.reached()},
                         {"runs", accuracy.runs},

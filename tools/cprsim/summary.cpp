@@ -147,9 +147,8 @@ std::string describe(const CheckResult& check) {
 
 std::string describe(const AccuracyReport& accuracy) {
   std::string text = fmt::format(
-      "{:.3g} m asked for, error about {:.1g} m (largest distance from a looser run / 3; "
-      "{} runs in all)",
-      accuracy.asked, accuracy.estimate, accuracy.runs);
+      "{:.3g} {} asked for, error about {:.1g} (from the distance to a looser run; {} runs in all)",
+      accuracy.asked, accuracy.unit, accuracy.estimate, accuracy.runs);
   if (accuracy.reached()) return text;
   return text + (accuracy.held_back.empty()
                      ? "; not reached"

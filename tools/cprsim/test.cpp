@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "scenes/loader/files.h"
+#include "tools/cprsim/accuracy_control.h"
 #include "tools/cprsim/commands.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/interrupt.h"
@@ -67,11 +68,32 @@ void judge_rejection(const LoadedScene& loaded, TestCase& test) {
   }
 }
 
+/// As `cprsim run` would: where an accuracy is asked for, until it is reached.
+QuietRun run_as_asked(const Scene& scene, std::vector<ExpectResult>& results) {
+  const auto stop = [] { return stop_signal() != 0; };
+  AccuracyControl control(scene);
+  if (control.asked()) control.fly_pilot(stop);
+  while (true) {
+    Expectations expectations(scene);
+    const Onlooker judge = onlooker(expectations), track = onlooker(control.track());
+    const Onlooker both{[&](const Snapshot& start) {
+                          judge.begin(start);
+                          track.begin(start);
+                        },
+                        [&](const Snapshot& before, const Snapshot& now) {
+                          judge.step(before, now);
+                          track.step(before, now);
+                        }};
+    const QuietRun run = run_quietly(control.scene(), control.asked() ? both : judge, stop);
+    results = expectations.results(run.status == RunStatus::kDone);
+    if (!control.asked() || run.status != RunStatus::kDone ||
+        !control.refine(run.statistics.section_evaluations))
+      return run;
+  }
+}
+
 void judge_run(const Scene& scene, TestCase& test) {
-  Expectations expectations(scene);
-  const QuietRun run =
-      run_quietly(scene, onlooker(expectations), [] { return stop_signal() != 0; });
-  test.expectations = expectations.results(run.status == RunStatus::kDone);
+  const QuietRun run = run_as_asked(scene, test.expectations);
   const bool met =
       std::all_of(test.expectations.begin(), test.expectations.end(),
                   [](const ExpectResult& result) { return result.verdict == Verdict::kMet; });
