@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "engine/model/profile.h"
+#include "engine/model/rest_shape.h"
 #include "engine/section/section.h"
 
 namespace cprsim {
@@ -24,17 +24,17 @@ class SectionsAlong {
   /// At s, a fraction of the length; where s is a step, on the side of `inside`.
   SectionProperties at(double s, double inside) const;
 
-  Vec3 rest_curvature(double s) const;
+  Vec3 rest_curvature(double s) const { return rest_.curvature(s); }
 
   /// The unloaded rod: section s as seen from the base.
-  Pose unloaded(double s, double length) const;
+  Pose unloaded(double s, double length) const { return rest_.unloaded(s, length); }
 
   bool bent_at_rest() const {
     return !spec_.rest_samples.empty() || !spec_.rest_curvature.isZero();
   }
 
   /// Turn of the unloaded rod from end to end, rad.
-  double turn(double length) const;
+  double turn(double length) const { return rest_.turn(length); }
 
   /// Where sections are not smooth, fractions of the length within (0, 1).
   const std::vector<double>& breaks() const { return breaks_; }
@@ -43,7 +43,7 @@ class SectionsAlong {
   RodSpec spec_;
   bool immersed_ = false;
   std::vector<double> breaks_;
-  Profile rest_[3];  ///< of s in place of time
+  RestShape rest_;
 };
 
 }  // namespace cprsim

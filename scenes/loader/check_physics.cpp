@@ -29,7 +29,8 @@ bool given_anywhere(const Node& node, std::string_view name) {
 
 void check_masses(Reading& r) {
   const std::vector<bool> fixed = fixed_bodies(r.scene);
-  for (std::size_t b = 0; b < r.scene.bodies.size(); ++b) {
+  // those that join rods have no mass
+  for (std::size_t b = 0; b < at(r.frames.body_count()); ++b) {
     if (fixed[b]) continue;
     const Node& link = node_of_body(r, b);
     const Node* inertial = link.child("inertial");

@@ -10,6 +10,7 @@
 #include "scenes/loader/disks.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/rest_table.h"
+#include "scenes/loader/rod_ends.h"
 #include "scenes/loader/sections.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
@@ -266,67 +267,6 @@ void require_stiffness(Reading& r, const Chain& chain, const RodSpec& rod) {
                          : "give a <material>, or these values in <stiffness>";
 }
 
-std::optional<Named> end_frame(Reading& r, const Node& end, int scope) {
-  const Attribute* a = end.attribute("attached_to");
-  if (!a || a->value.empty()) return std::nullopt;
-  const auto found = r.frames.find_outwards(scope, a->value);
-  if (found && found->kind != FrameKind::kRod) return found;
-  const std::size_t colons = a->value.rfind("::");
-  const auto owner = colons == std::string::npos
-                         ? found
-                         : r.frames.find_outwards(scope, a->value.substr(0, colons));
-  if (owner && owner->kind == FrameKind::kRod)
-    r.report.bad_value("E520", end, *a, "a rod attached to a rod is not available in this version",
-                       "available: links and frames; put a light link between them");
-  else
-    r.report.bad_value("E403", end, *a, "there is no link or frame '" + a->value + "'",
-                       mean(nearest_name(a->value, r.frames.known_names(scope))));
-  return std::nullopt;
-}
-
-RodEndSpec read_end(Reading& r, const Node& node, int scope) {
-  RodEndSpec end;
-  end.place = node.place;
-  const std::string_view joint = node.value("joint");
-  if (joint == "fixed") end.joint = EndJoint::kFixed;
-  if (joint == "revolute") end.joint = EndJoint::kRevolute;
-  if (joint == "ball") end.joint = EndJoint::kBall;
-  if (joint == "universal") end.joint = EndJoint::kUniversal;
-  end.spin_free = node.value("spin") == "free";
-  const auto named = end_frame(r, node, scope);
-  if (!named) return end;
-  const Pose X_WE = r.frames.posed(node, scope, named->index);
-  end.at = r.frames.frame_ref(r.frames.body_of(named->index), X_WE);
-  const Node* axis = node.child("axis");
-  if (end.joint == EndJoint::kRevolute && !axis && !mentioned({&node}, "axis"))
-    r.report.missing("E303", node, "a revolute <" + node.name + "> needs an <axis>");
-  if (end.joint != EndJoint::kRevolute && axis)
-    r.report.error("E310", *axis, "only a revolute end has an axis");
-  const Node* xyz = axis ? axis->child("xyz") : nullptr;
-  if (!xyz) return end;
-  end.axis = vec3_of(xyz, end.axis);
-  if (end.axis.norm() < 1e-9) r.report.bad_text("E506", *xyz, "the axis has length 0");
-  if (const Attribute* in = xyz->attribute("expressed_in"); in && !in->value.empty()) {
-    const auto frame = r.frames.find_outwards(scope, in->value);
-    if (!frame || frame->kind == FrameKind::kRod)
-      r.report.bad_value("E403", *xyz, *in, "there is no frame '" + in->value + "'");
-    else
-      end.axis = X_WE.R.transpose() * r.frames.X_W(frame->index).R * end.axis;
-  }
-  end.axis.normalize();
-  return end;
-}
-
-void read_ends(Reading& r, const RodEntry& entry, RodSpec& rod) {
-  const Node* base = entry.node->child("base");
-  const Node* tip = entry.node->child("tip");
-  if (base) rod.base = read_end(r, *base, entry.scope);
-  if (tip) rod.tip = read_end(r, *tip, entry.scope);
-  if (base && base->value("joint") == "free" && r.scene.simulation.mode != Mode::kDynamic)
-    r.report.bad_value("E520", *base, *base->attribute("joint"), "a free base has no equilibrium",
-                       "available: fixed, revolute, ball, universal; free in a dynamic scene");
-}
-
 void read_without(Reading& r, const Chain& chain, RodSpec& rod) {
   std::vector<std::string> names;
   for (int k = 0; k < kEffectCount; ++k)
@@ -344,12 +284,13 @@ void read_without(Reading& r, const Chain& chain, RodSpec& rod) {
 }  // namespace
 
 void read_rods(Reading& r, const Node&) {
+  std::vector<RodOnRod> on_rods;
   for (const RodEntry& entry : r.frames.rods()) {
     RodSpec rod;
     rod.name = entry.name;
     rod.place = entry.node->place;
     rod.length = number_of(entry.node->child("length"), 0);
-    read_ends(r, entry, rod);
+    read_rod_ends(r, entry, rod, on_rods);
     const Chain chain = inheritance(r, entry);
     if (!chain.empty()) {
       for (auto node = chain.rbegin(); node != chain.rend(); ++node)
@@ -384,6 +325,7 @@ void read_rods(Reading& r, const Node&) {
     }
     r.scene.rods.push_back(std::move(rod));
   }
+  join_rods(r, std::move(on_rods));
 }
 
 }  // namespace cprsim
