@@ -202,8 +202,8 @@ void add_rods(Robot& robot, const RodMaker& make) {
     rod.model = make(rod.choice.method, plan);
     if (!spec.start.empty()) {
       const bool twisted = holds_spin(spec.base) && holds_spin(spec.tip);
-      rod.model->set_curve(RodCurve(spec.start, rod.length, plan.X_WBase.R,
-                                    twisted ? &plan.X_WTip.R : nullptr));
+      rod.model->set_curve(
+          RodCurve(spec.start, rod.length, plan.X_WBase.R, twisted ? &plan.X_WTip.R : nullptr));
     }
     robot.rods.push_back(std::move(rod));
   }

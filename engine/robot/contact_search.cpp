@@ -285,7 +285,8 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes, bool l
                return false;
              const double other = static_cast<double>(contact.cell) + contact.xi;
              const double way = std::abs(at - other);
-             return (late && way < 1) || (way < kValley && !open(o, other) && downhill(o, other, at));
+             return (late && way < 1) ||
+                    (way < kValley && !open(o, other) && downhill(o, other, at));
            });
   };
   const auto add = [&](std::size_t o, std::size_t cell, double xi, double d) {

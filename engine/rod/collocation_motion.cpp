@@ -41,8 +41,7 @@ void CollocationRod::set_turned(const Pose& X_WBase, const std::function<Vec4(do
   if (touch_) update_touch_nodes();
 }
 
-void CollocationRod::set_rotated(const Pose& X_WBase,
-                                 const std::function<Mat3(double)>& rotation) {
+void CollocationRod::set_rotated(const Pose& X_WBase, const std::function<Mat3(double)>& rotation) {
   // of the two quaternions of a rotation the one next to the last
   Vec4 last = Vec4::UnitX();
   set_turned(X_WBase, [&](double s) {
@@ -61,8 +60,7 @@ void CollocationRod::set_curve(const RodCurve& curve) {
 
 void CollocationRod::set_unloaded(const Pose& X_WBase) {
   if (options_.along) {
-    set_rotated(X_WBase,
-                [&](double s) { return options_.along->unloaded(s, forcing_.length).R; });
+    set_rotated(X_WBase, [&](double s) { return options_.along->unloaded(s, forcing_.length).R; });
     return;
   }
   set_shape(X_WBase, [&](double s) { return Vec3(s * forcing_.length * section_.u_rest); });

@@ -53,7 +53,8 @@ RodCurve::RodCurve(const std::vector<CurveSample>& samples, double length, const
     finish_keyframes(term, &ends);
     axes_[axis].terms.push_back(std::move(term));
   }
-  // steps short enough that turning from tangent to tangent by the least angle is parallel transport
+  // steps short enough that turning from tangent to tangent by the least angle is parallel
+  // transport
   constexpr std::size_t kStepsPerSample = 8;
   const std::size_t steps = kStepsPerSample * samples.size();
   grid_.push_back(rotation_between(R_WBase.col(2), at(0).p_s.normalized()) * R_WBase);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A shape that a rod is to start in: the cubic spline through points of its centreline, with sections
-// that turn no more about the tangent than they must to meet both ends.
+// A shape that a rod is to start in: the cubic spline through points of its centreline, with
+// sections that turn no more about the tangent than they must to meet both ends.
 #pragma once
 
 #include <vector>

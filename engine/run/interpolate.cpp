@@ -111,8 +111,8 @@ EnergySample energy_between(const EnergySample& a, const EnergySample& b, const 
 }
 
 /// How far the ends of a piece can be trusted to tell its course: 1 where what they say of the way
-/// between them is off by little of `way`, 0 where it is not. Strains jump at loads and steps, and a
-/// node knows one side of them, or the mean.
+/// between them is off by little of `way`, 0 where it is not. Strains jump at loads and steps, and
+/// a node knows one side of them, or the mean.
 double trust(double off, double way) {
   constexpr double kLittle = 0.1;
   if (!(way > 0)) return 0;
@@ -139,8 +139,8 @@ void place_between(const RodPoint& a, const RodPoint& b, double length, const Be
   const double trusted = trust((turn - 0.5 * h * (rate_a + rate_b)).norm(),
                                h * std::max(rate_a.norm(), rate_b.norm()));
   const Vec3 bent = at.hermite<Vec3>(Vec3::Zero(), rate_a, turn, rate_b);
-  const Vec3 rate = 6 * t * (1 - t) / h * turn + (1 - t) * (1 - 3 * t) * rate_a +
-                    t * (3 * t - 2) * rate_b;
+  const Vec3 rate =
+      6 * t * (1 - t) / h * turn + (1 - t) * (1 - 3 * t) * rate_a + t * (3 * t - 2) * rate_b;
   point.rotation = a.rotation * exp_so3(trusted * bent + (1 - trusted) * t * turn);
   point.curvature = trusted * (right_jacobian(bent) * rate) + (1 - trusted) * point.curvature;
   const Vec3 p_a = a.rotation * a.shear_stretch, p_b = b.rotation * b.shear_stretch,
@@ -154,8 +154,8 @@ void place_between(const RodPoint& a, const RodPoint& b, double length, const Be
   const Vec3 m_a = -p_a.cross(a.force), m_b = -p_b.cross(b.force);
   const double pulled = trust((b.moment - a.moment - 0.5 * h * (m_a + m_b)).norm(),
                               h * std::max(m_a.norm(), m_b.norm()));
-  point.moment = pulled * at.hermite<Vec3>(a.moment, m_a, b.moment, m_b) +
-                 (1 - pulled) * point.moment;
+  point.moment =
+      pulled * at.hermite<Vec3>(a.moment, m_a, b.moment, m_b) + (1 - pulled) * point.moment;
 }
 
 }  // namespace

@@ -115,9 +115,8 @@ struct Simulation::Parts {
     if (shaped && report.converged() && equations.loads_on())
       report = relax_from_shape(contacts, equations, options);
     else if (!shaped)
-      report = contacts.any() && equations.loads_on()
-                   ? load_gradually(contacts, equations, options)
-                   : solve_statics(equations, options);
+      report = contacts.any() && equations.loads_on() ? load_gradually(contacts, equations, options)
+                                                      : solve_statics(equations, options);
     count(report);
     if (!report.converged())
       fail("no static equilibrium found" +

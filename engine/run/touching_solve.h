@@ -25,8 +25,8 @@ SolveReport load_gradually(RodContacts& contacts, Equations& equations,
 SolveReport hold_shape(Equations& equations, const SolveOptions& options);
 
 /// From there to the equilibrium that a rod in syrup comes to when it is let go: the springs become
-/// drag, which falls step by step (engine/solve/newton.h, relaxation()), and what touches on the way
-/// is touched.
+/// drag, which falls step by step (engine/solve/newton.h, relaxation()), and what touches on the
+/// way is touched.
 SolveReport relax_from_shape(RodContacts& contacts, Equations& equations,
                              const SolveOptions& options);
 

@@ -177,8 +177,9 @@ void read_solver(Reading& r, const Node& node) {
     solver.accuracy = number_of(accuracy, 0);
     const bool distances = !accuracy->attribute("of");
     if (*solver.accuracy < 1e-12 || (distances && *solver.accuracy > 1))
-      r.report.bad_text("E306", *accuracy, distances ? "accuracy lies between 1e-12 and 1 m"
-                                                     : "accuracy is 1e-12 or more");
+      r.report.bad_text(
+          "E306", *accuracy,
+          distances ? "accuracy lies between 1e-12 and 1 m" : "accuracy is 1e-12 or more");
   }
   if (const Node* space = node.child("space")) read_space(r, *space);
   if (const Node* time = node.child("time")) read_time(r, *time);

@@ -102,6 +102,7 @@ class RigidLink : public RodModel {
   void hold_gap(double fraction) override { held_gap_ = fraction * gap_; }
 
   void set_curve(const RodCurve&) override {}
+
   void bow(const Port&, const Port&) override {}  // nothing of it can
 
   void mark_positions() override {}

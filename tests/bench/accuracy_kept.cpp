@@ -103,24 +103,25 @@ void write_page(const std::vector<Outcome>& outcomes, const fs::path& folder) {
     warned += ratio > 1 && !o.reached ? 1 : 0;
   }
   char line[512];
-  page
-      << "# Whether an accuracy that is asked for is kept\n\n"
-         "`<accuracy>1e-5</accuracy>`, or `--accuracy 1e-5`, lets the program choose resolution "
-         "and "
-         "steps. It runs the scene twice, the first time with ten times the error asked for; a "
-         "third "
-         "of the largest distance between the two, over all links and eighths of rods, is reported as "
-         "the error of the second, and the scene is run again with finer settings while that is "
-         "more "
-         "than what was asked.\n\n"
-         "Here every shipped scene with rods and without contact is run for errors of 1e-3, 1e-4 "
-         "and "
-         "1e-5 of its longest rod, at most 0.5 s of a motion, without the step, scheme and "
-         "resolution that it sets. The true error is the largest distance of any link or tip, at "
-         "201 "
-         "instants, from a run that is held to a tenth of the error. Where a run stays far below what was "
-         "asked it is because rods have three cells at least. Made by `cprsim_accuracy_kept docs` "
-         "(tests/bench/accuracy_kept.cpp).\n\n";
+  page << "# Whether an accuracy that is asked for is kept\n\n"
+          "`<accuracy>1e-5</accuracy>`, or `--accuracy 1e-5`, lets the program choose resolution "
+          "and "
+          "steps. It runs the scene twice, the first time with ten times the error asked for; a "
+          "third "
+          "of the largest distance between the two, over all links and eighths of rods, is "
+          "reported as "
+          "the error of the second, and the scene is run again with finer settings while that is "
+          "more "
+          "than what was asked.\n\n"
+          "Here every shipped scene with rods and without contact is run for errors of 1e-3, 1e-4 "
+          "and "
+          "1e-5 of its longest rod, at most 0.5 s of a motion, without the step, scheme and "
+          "resolution that it sets. The true error is the largest distance of any link or tip, at "
+          "201 "
+          "instants, from a run that is held to a tenth of the error. Where a run stays far below "
+          "what was "
+          "asked it is because rods have three cells at least. Made by `cprsim_accuracy_kept docs` "
+          "(tests/bench/accuracy_kept.cpp).\n\n";
   std::snprintf(
       line, sizeof line,
       "Of %zu runs the error is at most what was asked for in %zu (%.0f %%), %zu times "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rods attached to ends of rods, from the scene's text on: two in a row are one of their length, and
-// what a fork's prongs carry its stem carries.
+// Rods attached to ends of rods, from the scene's text on: two in a row are one of their length,
+// and what a fork's prongs carry its stem carries.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -114,10 +114,11 @@ TEST(RodsOnRods, ThatCannotBeAreRefusedWhereTheyStand) {
   EXPECT_EQ(codes(rod("a", "a::tip", 1)), Codes{"E405"});
   EXPECT_EQ(codes(rod("a", "base", 1) + rod("b", "a", 1)), Codes{"E403"});
   EXPECT_EQ(codes(rod("a", "base", 1) + rod("b", "a::middle", 1)), Codes{"E403"});
-  EXPECT_EQ(codes("<cprsim:rod name=\"a\" class=\"wire\"><base attached_to=\"base\" joint=\"ball\"/>"
-                  "<length>1</length></cprsim:rod>" +
-                  rod("b", "a::base", 1)),
-            Codes{"E520"});
+  EXPECT_EQ(
+      codes("<cprsim:rod name=\"a\" class=\"wire\"><base attached_to=\"base\" joint=\"ball\"/>"
+            "<length>1</length></cprsim:rod>" +
+            rod("b", "a::base", 1)),
+      Codes{"E520"});
   EXPECT_EQ(codes(rod("a", "base", 1) + rod("b", "a::base", 1) + rod("c", "a::tip", 1)), Codes{});
 }
 

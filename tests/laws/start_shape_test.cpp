@@ -87,16 +87,18 @@ Scene arch(double side) {
   for (int i = 0; i <= 60; ++i) {
     const double s = i / 60.;
     // that s is the length along it, but for terms of fourth order in its height
-    rod.start.push_back({s, {0.9 * s + 0.0079 * std::sin(4 * kPi * s), 0,
-                             side * 0.1 * (1 - std::cos(2 * kPi * s))}});
+    rod.start.push_back(
+        {s,
+         {0.9 * s + 0.0079 * std::sin(4 * kPi * s), 0, side * 0.1 * (1 - std::cos(2 * kPi * s))}});
   }
   scene.rods.push_back(rod);
   scene.simulation.initial_static = true;
   return scene;
 }
 
-// Of the elastica between clamps (Love, Mathematical Theory of Elasticity, section 262) with modulus
-// p: 2 E / K - 1 is the distance of the ends over the length, p / K the height of its middle.
+// Of the elastica between clamps (Love, Mathematical Theory of Elasticity, section 262) with
+// modulus p: 2 E / K - 1 is the distance of the ends over the length, p / K the height of its
+// middle.
 constexpr double kHeight = 0.19492431137557384;
 
 double middle_of(const Scene& scene, bool planar) {
@@ -118,8 +120,8 @@ TEST_P(StartShape, LeadsToTheEquilibriumOnItsSide) {
           << side << (planar ? " in a plane" : "");
 }
 
-// A quarter of a circle that is let go: it is there, at rest, with the energy of its bending but for
-// what the free end, which bears no moment, straightens; and none is made.
+// A quarter of a circle that is let go: it is there, at rest, with the energy of its bending but
+// for what the free end, which bears no moment, straightens; and none is made.
 TEST_P(StartShape, IsWhereMotionBegins) {
   Scene scene;
   RodSpec rod = steel_rod(1, 1e-3);

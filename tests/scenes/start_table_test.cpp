@@ -80,9 +80,10 @@ TEST_F(StartTable, SaysWhatIsWrong) {
 }
 
 TEST(Solver, ADoglegIsLevenbergMarquardtsAndSaysSo) {
-  const LoadResult result = load_text(std::regex_replace(
-      scene_text(), std::regex("</physics>"),
-      "<cprsim:solver method=\"auto\"><nonlinear algorithm=\"dogleg\"/></cprsim:solver></physics>"));
+  const LoadResult result =
+      load_text(std::regex_replace(scene_text(), std::regex("</physics>"),
+                                   "<cprsim:solver method=\"auto\"><nonlinear "
+                                   "algorithm=\"dogleg\"/></cprsim:solver></physics>"));
   ASSERT_NE(result.scene, nullptr) << to_text(result.diagnostics);
   EXPECT_EQ(result.scene->solver.algorithm, NonlinearAlgorithm::kLevenbergMarquardt);
   EXPECT_TRUE(has_code(result, "W592"));

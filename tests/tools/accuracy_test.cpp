@@ -70,7 +70,8 @@ TEST_F(Accuracy, MayBeRelativeAndOfAChannel) {
   const std::size_t from = scene.find("<cprsim:solver"), to = scene.find("</physics>");
   const auto asking = [&](const std::string& accuracy) {
     std::string text = scene;
-    text.replace(from, to - from, "<cprsim:solver method=\"auto\">" + accuracy + "</cprsim:solver>");
+    text.replace(from, to - from,
+                 "<cprsim:solver method=\"auto\">" + accuracy + "</cprsim:solver>");
     return with(text, "<channel>energy.*</channel>",
                 "<channel>wire::rod.base.wrench.moment.y</channel>");
   };

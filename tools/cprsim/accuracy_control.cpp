@@ -13,9 +13,9 @@ namespace cprsim {
 namespace {
 
 constexpr int kInstants = 200;
-constexpr int kPlaces = 8;  // along a rod
-constexpr double kLooser = 10;  // asked of the pilot
-constexpr double kShare = 3;    // (1)
+constexpr int kPlaces = 8;              // along a rod
+constexpr double kLooser = 10;          // asked of the pilot
+constexpr double kShare = 3;            // (1)
 constexpr double kLeastOrder = 2. / 3;  // kappa of (1)
 constexpr int kMostRuns = 5;
 constexpr double kLeastAccuracy = 1e-12;  // m; what a scene may ask for
@@ -175,7 +175,8 @@ void AccuracyControl::fly_pilot(const std::function<bool()>& stop) {
   Scene scene = looser(scene_);
   // at its coarsest the formula gives the pilot no fewer pieces, and no error would be seen
   const auto resolution = resolution_of(scene_);
-  if (!resolution.empty() && resolution == resolution_of(scene)) scene = cut(scene, resolution, false);
+  if (!resolution.empty() && resolution == resolution_of(scene))
+    scene = cut(scene, resolution, false);
   pilot_.emplace(scene);
   const QuietRun run = run_quietly(scene, onlooker(*pilot_), stop);
   ++report_.runs;
@@ -184,8 +185,8 @@ void AccuracyControl::fly_pilot(const std::function<bool()>& stop) {
   if (run.status != RunStatus::kDone) pilot_.reset();
 }
 
-// Where the formula gives no more pieces for less error, what is left of it along the rods would not
-// be seen.
+// Where the formula gives no more pieces for less error, what is left of it along the rods would
+// not be seen.
 void AccuracyControl::cut_finer(const std::vector<Resolution>& last) {
   if (!last.empty() && resolution_of(scene_) == last) scene_ = cut(scene_, last, true);
 }
@@ -193,8 +194,8 @@ void AccuracyControl::cut_finer(const std::vector<Resolution>& last) {
 bool AccuracyControl::refine(long evaluations) {
   constexpr double kAim = 0.3;  // of what is asked for
   ++report_.runs;
-  report_.estimate = pilot_ ? estimated_error(*pilot_, *track_, times_)
-                            : std::numeric_limits<double>::infinity();
+  report_.estimate =
+      pilot_ ? estimated_error(*pilot_, *track_, times_) : std::numeric_limits<double>::infinity();
   const bool at_the_end = *scene_.solver.accuracy <= kLeastAccuracy;
   const bool settled =
       report_.reached() || at_the_end || report_.runs >= kMostRuns || !report_.held_back.empty();

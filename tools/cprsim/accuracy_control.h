@@ -103,7 +103,7 @@ class AccuracyControl {
   Scene scene_;
   std::optional<double> asked_;
   bool residual_is_ours_ = false;  ///< the scene does not say how far equations are solved
-  double times_ = 10;  ///< the error of the last run that was asked of its pilot
+  double times_ = 10;              ///< the error of the last run that was asked of its pilot
   std::optional<AnswerTrack> pilot_, track_;
   AccuracyReport report_;
 };

@@ -38,7 +38,7 @@ struct Run {
   std::filesystem::path folder;
   Stopwatch watch;
   RunReport report;
-  AnswerTrack* track = nullptr;                 ///< if an accuracy is asked for
+  AnswerTrack* track = nullptr;                   ///< if an accuracy is asked for
   std::unique_ptr<RunProfile> profile = nullptr;  ///< if asked for
 
   void write_report() const { write_file(folder / "run.json", to_json(scene, report)); }

@@ -238,8 +238,8 @@ TEST(PointAt, KnowsWhatStrainsAndForcesSay) {
 // A node between two sections knows the mean of its two curvatures: nothing is built on that.
 TEST(PointAt, IsNotMisledByAJump) {
   RodSample rod = quarter_circle(1, 8);
-  const double before = (point_at(rod, 0.3).position - point_at(quarter_circle(1, 64), 0.3).position)
-                            .norm();
+  const double before =
+      (point_at(rod, 0.3).position - point_at(quarter_circle(1, 64), 0.3).position).norm();
   EXPECT_LT(before, 1e-8);
   rod.points[3].curvature *= 3;
   for (const double s : {0.27, 0.3, 0.34}) {
