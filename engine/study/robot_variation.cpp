@@ -103,8 +103,11 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
   const auto point = (n - 6) / static_cast<Eigen::Index>(field.points.size());
   for (Eigen::Index i = 6; i < n; i += point)
     unit.segment<3>(i).setConstant(1 / rod.length);
-  MatX motions = unit.asDiagonal();
-  if (robot.plane) motions *= planar_motions(field, robot.plane->col(2));
+  MatX motions = unit.asDiagonal(), in_plane;
+  if (robot.plane) {
+    in_plane = planar_motions(field, robot.plane->col(2));
+    motions *= in_plane;
+  }
   const MatX Cx = C.leftCols(n) * motions;
   const MatX Z = motions * kernel_of(Cx, kDependent);
   const MatX X = motions * least_norm_solutions(Cx, -C.rightCols<12>(), kDependent);
@@ -114,12 +117,16 @@ ReducedRod reduce(const Robot& robot, const RobotRod& rod, bool rotary, bool met
   out.expand.resize(n, out.inner + 12);
   out.expand << Z, X;
   // E^T F E with E = (Z X; 0 I), block by block
+  const auto by_motions = [&](const MatX& F) {
+    const MatX all = unit.asDiagonal() * F * unit.asDiagonal();
+    return robot.plane ? MatX(in_plane.transpose() * all * in_plane) : all;
+  };
   const auto reduced = [&](const MatX& F) {
     const MatX across = F.topLeftCorner(n, n) * X + F.topRightCorner(n, 12);
     MatX all(out.inner + 12, out.inner + 12);
-    all.topLeftCorner(out.inner, out.inner) = between_kernel(
-        Cx, kDependent, unit.asDiagonal() * F.topLeftCorner(n, n) * unit.asDiagonal());
-    all.topRightCorner(out.inner, 12) = onto_kernel(Cx, kDependent, unit.asDiagonal() * across);
+    all.topLeftCorner(out.inner, out.inner) =
+        between_kernel(Cx, kDependent, by_motions(F.topLeftCorner(n, n)));
+    all.topRightCorner(out.inner, 12) = onto_kernel(Cx, kDependent, motions.transpose() * across);
     all.bottomLeftCorner(12, out.inner) = all.topRightCorner(out.inner, 12).transpose();
     all.bottomRightCorner<12, 12>() =
         X.transpose() * across + F.bottomLeftCorner(12, n) * X + F.bottomRightCorner<12, 12>();

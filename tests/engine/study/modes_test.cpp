@@ -120,6 +120,25 @@ TEST(Modes, AxialForceChangesAPinnedBeamsFrequencies) {
 
 // A body that hangs on a joint by its arm l, springs k: (m g l + k) / (I + m l²) for swings, k / I
 // for the turn about the plumb line.
+// A bent rod that stays in its plane has those of its motions that do, with their frequencies.
+TEST(Modes, OfAPlanarRobotAreAmongThoseInSpace) {
+  Scene arch = beam(EndJoint::kFixed, EndJoint::kFixed);
+  arch.rods[0].tip.at.X_BF.p = {0, 0, 0.9 * kLength};
+  StaticStudy space(arch);
+  arch.planar_normal = Vec3::UnitY();
+  StaticStudy plane(arch);
+  ASSERT_TRUE(space.solve().converged());
+  ASSERT_TRUE(plane.solve().converged());
+  ASSERT_GT(std::abs(point_at(plane.snapshot().rods[0], 0.5).position.x()), 0.1 * kLength);
+  const std::vector<VibrationMode> all = natural_modes(space, 20);
+  for (const VibrationMode& mode : natural_modes(plane, 5)) {
+    EXPECT_GT(mode.omega_squared, 0);
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const VibrationMode& other) {
+      return std::abs(other.omega_squared / mode.omega_squared - 1) < 1e-6;
+    })) << mode.omega_squared;
+  }
+}
+
 TEST(Modes, BodiesOnBallsAndUniversals) {
   constexpr double kMass = 0.4, kArm = 0.25, kSpring = 0.3;
   const Vec3 I(2e-3, 3e-3, 1e-3);
