@@ -9,6 +9,7 @@
 //                   that rotation
 //   (5) position    the quintic Hermite through p_s = R v, p_ss = R (u × v + v_s)
 //   (6) moment      the cubic Hermite through m_s = -p_s × n
+//   (7) force       the cubic Hermite with the slopes of parabolas through neighbours
 // as far as the ends' strains fit to the way between them; otherwise (2), (1) and (3) with s for t.
 #include <algorithm>
 #include <cmath>
@@ -129,6 +130,33 @@ Vec3 quintic(double t, double h, const Vec3 a[3], const Vec3 b[3]) {
          (10 * t3 - 15 * t4 + 6 * t5) * b[0];
 }
 
+/// Of the parabola through a point's force and its neighbours'; null beyond an end.
+Vec3 force_rate(const RodPoint* before, const RodPoint& at, const RodPoint* after) {
+  const auto rate = [](const RodPoint& a, const RodPoint& b) {
+    return Vec3((b.force - a.force) / (b.s - a.s));
+  };
+  if (!before || !after) return before ? rate(*before, at) : rate(at, *after);
+  const double left = at.s - before->s, right = after->s - at.s;
+  return (right * rate(*before, at) + left * rate(at, *after)) / (left + right);
+}
+
+// (7)
+Vec3 force_between(const RodSample& rod, std::size_t a, const Between& at) {
+  const std::vector<RodPoint>& points = rod.points;
+  const RodPoint &from = points[a], &to = points[a + 1];
+  const double h = at.interval;
+  const Vec3 chord = to.force - from.force;
+  Vec3 rate_a = force_rate(a > 0 ? &points[a - 1] : nullptr, from, &to),
+       rate_b = force_rate(&from, to, a + 2 < points.size() ? &points[a + 2] : nullptr);
+  // beyond an end, as if that parabola went on
+  if (a == 0) rate_a = 2 / h * chord - rate_b;
+  if (a + 2 == points.size()) rate_b = 2 / h * chord - rate_a;
+  const double trusted = trust((chord - 0.5 * h * (rate_a + rate_b)).norm(),
+                               h * std::max(rate_a.norm(), rate_b.norm()));
+  return trusted * at.hermite<Vec3>(from.force, rate_a, to.force, rate_b) +
+         (1 - trusted) * at(from.force, to.force);
+}
+
 // (4) to (6)
 void place_between(const RodPoint& a, const RodPoint& b, double length, const Between& along,
                    RodPoint& point) {
@@ -200,6 +228,7 @@ RodPoint point_at(const RodSample& rod, double s) {
   RodPoint point = section_between(a, b, at);
   point.s = s;
   place_between(a, b, rod.length, at, point);
+  point.force = force_between(rod, static_cast<std::size_t>(above - rod.points.begin()) - 1, at);
   return point;
 }
 

@@ -212,7 +212,7 @@ RodSample wavy(int n) {
 }
 
 struct WavyErrors {
-  double position = 0, rotation = 0, curvature = 0, moment = 0;
+  double position = 0, rotation = 0, curvature = 0, moment = 0, force = 0;
 
   explicit WavyErrors(const RodSample& rod) {
     for (int k = 0; k < 100; ++k) {
@@ -222,6 +222,7 @@ struct WavyErrors {
       rotation = std::max(rotation, (got.rotation - exact.rotation).norm());
       curvature = std::max(curvature, (got.curvature - exact.curvature).norm());
       moment = std::max(moment, (got.moment - exact.moment).norm());
+      force = std::max(force, (got.force - exact.force).norm());
     }
   }
 };
@@ -232,6 +233,7 @@ TEST(PointAt, KnowsWhatStrainsAndForcesSay) {
   EXPECT_GT(std::log2(coarse.rotation / fine.rotation), 3.7);
   EXPECT_GT(std::log2(coarse.curvature / fine.curvature), 2.7);
   EXPECT_GT(std::log2(coarse.moment / fine.moment), 3.7);
+  EXPECT_GT(std::log2(coarse.force / fine.force), 2.5);
   EXPECT_LT(fine.position, 1e-8);
 }
 
