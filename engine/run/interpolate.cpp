@@ -9,7 +9,7 @@
 //                   that rotation
 //   (5) position    the quintic Hermite through p_s = R v, p_ss = R (u × v + v_s)
 //   (6) moment      the cubic Hermite through m_s = -p_s × n
-//   (7) force       the cubic Hermite with the slopes of parabolas through neighbours
+//   (7) force, velocity, v   the cubic Hermite with the slopes of parabolas through neighbours
 // as far as the ends' strains fit to the way between them; otherwise (2), (1) and (3) with s for t.
 #include <algorithm>
 #include <cmath>
@@ -130,10 +130,11 @@ Vec3 quintic(double t, double h, const Vec3 a[3], const Vec3 b[3]) {
          (10 * t3 - 15 * t4 + 6 * t5) * b[0];
 }
 
-/// Of the parabola through a point's force and its neighbours'; null beyond an end.
-Vec3 force_rate(const RodPoint* before, const RodPoint& at, const RodPoint* after) {
-  const auto rate = [](const RodPoint& a, const RodPoint& b) {
-    return Vec3((b.force - a.force) / (b.s - a.s));
+/// Of the parabola through a point and its neighbours; null beyond an end.
+Vec3 rate_at(const RodPoint* before, const RodPoint& at, const RodPoint* after,
+             Vec3 RodPoint::*value) {
+  const auto rate = [&](const RodPoint& a, const RodPoint& b) {
+    return Vec3((b.*value - a.*value) / (b.s - a.s));
   };
   if (!before || !after) return before ? rate(*before, at) : rate(at, *after);
   const double left = at.s - before->s, right = after->s - at.s;
@@ -141,20 +142,20 @@ Vec3 force_rate(const RodPoint* before, const RodPoint& at, const RodPoint* afte
 }
 
 // (7)
-Vec3 force_between(const RodSample& rod, std::size_t a, const Between& at) {
+Vec3 by_neighbours(const RodSample& rod, std::size_t a, const Between& at, Vec3 RodPoint::*value) {
   const std::vector<RodPoint>& points = rod.points;
   const RodPoint &from = points[a], &to = points[a + 1];
   const double h = at.interval;
-  const Vec3 chord = to.force - from.force;
-  Vec3 rate_a = force_rate(a > 0 ? &points[a - 1] : nullptr, from, &to),
-       rate_b = force_rate(&from, to, a + 2 < points.size() ? &points[a + 2] : nullptr);
+  const Vec3 chord = to.*value - from.*value;
+  Vec3 rate_a = rate_at(a > 0 ? &points[a - 1] : nullptr, from, &to, value),
+       rate_b = rate_at(&from, to, a + 2 < points.size() ? &points[a + 2] : nullptr, value);
   // beyond an end, as if that parabola went on
   if (a == 0) rate_a = 2 / h * chord - rate_b;
   if (a + 2 == points.size()) rate_b = 2 / h * chord - rate_a;
   const double trusted = trust((chord - 0.5 * h * (rate_a + rate_b)).norm(),
                                h * std::max(rate_a.norm(), rate_b.norm()));
-  return trusted * at.hermite<Vec3>(from.force, rate_a, to.force, rate_b) +
-         (1 - trusted) * at(from.force, to.force);
+  return trusted * at.hermite<Vec3>(from.*value, rate_a, to.*value, rate_b) +
+         (1 - trusted) * at(from.*value, to.*value);
 }
 
 // (4) to (6)
@@ -228,7 +229,9 @@ RodPoint point_at(const RodSample& rod, double s) {
   RodPoint point = section_between(a, b, at);
   point.s = s;
   place_between(a, b, rod.length, at, point);
-  point.force = force_between(rod, static_cast<std::size_t>(above - rod.points.begin()) - 1, at);
+  const auto index = static_cast<std::size_t>(above - rod.points.begin()) - 1;
+  for (Vec3 RodPoint::*value : {&RodPoint::force, &RodPoint::velocity, &RodPoint::shear_stretch})
+    point.*value = by_neighbours(rod, index, at, value);
   return point;
 }
 
