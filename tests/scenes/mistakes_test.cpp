@@ -52,7 +52,7 @@ std::vector<Mistake> mistakes() {
 
 TEST(Mistakes, AreToldOnceWithCodeLineAndColumn) {
   const std::vector<Mistake> all = mistakes();
-  EXPECT_GT(all.size(), 120U);
+  EXPECT_GT(all.size(), 220U);
   for (const Mistake& mistake : all) {
     const LoadResult result = load_text(mistake.text);
     EXPECT_FALSE(result.scene) << mistake.line;
