@@ -8,6 +8,8 @@
 
 #include "engine/math/so3.h"
 #include "engine/model/flight.h"
+#include "engine/robot/rod_between.h"
+#include "engine/solve/newton.h"
 #include "engine/solve/phase_clock.h"
 
 namespace cprsim {
@@ -188,6 +190,28 @@ void Equations::restart() {
   gaps_captured_ = false;
   prepare_rods();
   evaluate();
+}
+
+bool Equations::bring_together(const SolveOptions& options) {
+  const double fraction = fraction_;
+  fraction_ = 0;  // without loads; gaps are the rods' own
+  prepare_rods();
+  bool all = true;
+  for (RobotRod& rod : robot_.rods) {
+    if (!rod.tip_held) continue;
+    RodBetween alone(robot_, rod, rates_);
+    SolveOptions own = options;
+    own.most_work = options.most_work - (work() - alone.work());
+    if (!solve_statics(alone, own).converged()) {
+      all = false;
+      alone.restart();
+      alone.break_symmetry();
+    }
+    work_alone_ += alone.factorizations() * direction_work(*rod.model);
+  }
+  fraction_ = fraction;
+  prepare_rods();
+  return all;
 }
 
 void Equations::note(double value, Worst where, ProblemResidual& r) {

@@ -290,26 +290,32 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
   inner.tolerance = 1e-6;
   // assembly gaps close first, under strong drag; then the drag follows the residual, down as it
   // falls and up as it grows, which is what leads away from an unstable equilibrium
-  constexpr int kSteps = 400;
+  constexpr int kSteps = 400, kFew = 8;
   constexpr double kNoDrag = 1e-3;
   double drag = 10, fraction = options.assembled ? 1 : 0, last_residual = 0;
   for (int k = 0; k < kSteps; ++k) {
     const double target = std::min(1.0, fraction + 0.1);
     problem.set_fraction(target);
+    if (options.brisk) problem.remember();
     problem.set_relaxation(drag);
     const SolveReport part = newton(problem, inner);
     add_counts(total, part);
     if (!part.converged()) {
       drag *= 8;
       if (drag > 1e9 || part.status == SolveStatus::kWorkLimit) break;
+      if (options.brisk) {
+        problem.recall();
+        problem.evaluate();  // what drags is measured from there
+      }
       continue;
     }
     fraction = target;
     if (fraction < 1) continue;
     problem.set_relaxation(0);
     const double residual = problem.evaluate().largest;
-    if (last_residual > 0) drag *= std::clamp(residual / last_residual, 0.25, 2.0);
     const bool falling = residual < last_residual;
+    const bool easy = options.brisk && falling && part.iterations <= kFew;
+    if (last_residual > 0) drag *= std::clamp(residual / last_residual, 0.25, easy ? 0.5 : 2.0);
     last_residual = residual;
     const bool there = residual <= 10 * inner.tolerance || (falling && drag <= kNoDrag);
     if (!there) continue;
@@ -364,6 +370,7 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
   struct Rung {
     SolveReport (*solve)(Problem&, const SolveOptions&);
     bool soft, bowed, gaping;  ///< gaping: only where parts must be brought together
+    bool together = false;     ///< each by itself before
   };
 
   const Rung rungs[] = {{newton, true, false, false},
@@ -373,7 +380,9 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
                         {continuation, false, false, false},
                         {relaxation, false, true, true},
                         {relaxation, true, false, true},
-                        {relaxation, false, false, false}};
+                        {relaxation, false, false, false},
+                        {newton, false, false, true, true},
+                        {relaxation, false, false, true, true}};
   SolveReport total;
   const ProblemResidual first = problem.evaluate();
   total.initial_residual = first.largest;
@@ -385,7 +394,11 @@ SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
       problem.evaluate();
     }
     if (rung.soft && gaping) soft_start(problem, options, total);
-    const SolveReport part = rung.solve(problem, options);
+    const bool assembled = rung.together && problem.bring_together(options);
+    SolveOptions own = options;
+    own.assembled = options.assembled || assembled;
+    own.brisk = options.brisk || rung.together;
+    const SolveReport part = rung.solve(problem, own);
     add_counts(total, part);
     total.stage = part.stage;
     if (part.converged()) return total;

@@ -7,6 +7,8 @@
 
 namespace cprsim {
 
+struct SolveOptions;
+
 struct ProblemResidual {
   double merit = 0;    ///< half the sum of squared rows
   double largest = 0;  ///< largest row
@@ -34,6 +36,9 @@ class Problem {
   virtual void mark() = 0;  ///< remembers the unknowns for longer: the watchdog's way back
   virtual void return_to_mark() = 0;
 
+  virtual void remember() = 0;  ///< the unknowns, for as long as a ladder's rung lasts
+  virtual void recall() = 0;
+
   /// Fraction of loads applied and of initial assembly gaps closed; 1 is the problem itself.
   virtual void set_fraction(double fraction) = 0;
   /// Drag towards the unknowns at the time of the call, in units of the robot's own stiffness; 0 is
@@ -47,6 +52,9 @@ class Problem {
   virtual void break_symmetry() = 0;
   /// Back to the unknowns the scene starts from.
   virtual void restart() = 0;
+
+  /// Brings parts together, unloaded, that can be each by itself. @return whether all of them are
+  virtual bool bring_together(const SolveOptions&) { return false; }
 
   virtual std::string worst_row() const = 0;
   virtual double growth() const = 0;
