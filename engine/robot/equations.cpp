@@ -9,7 +9,6 @@
 #include "engine/math/so3.h"
 #include "engine/model/flight.h"
 #include "engine/robot/rod_between.h"
-#include "engine/solve/newton.h"
 #include "engine/solve/phase_clock.h"
 
 namespace cprsim {
@@ -192,26 +191,19 @@ void Equations::restart() {
   evaluate();
 }
 
-bool Equations::bring_together(const SolveOptions& options) {
-  const double fraction = fraction_;
+std::vector<std::unique_ptr<Problem>> Equations::take_apart() {
   fraction_ = 0;  // without loads; gaps are the rods' own
   prepare_rods();
-  bool all = true;
-  for (RobotRod& rod : robot_.rods) {
-    if (!rod.tip_held) continue;
-    RodBetween alone(robot_, rod, rates_);
-    SolveOptions own = options;
-    own.most_work = options.most_work - (work() - alone.work());
-    if (!solve_statics(alone, own).converged()) {
-      all = false;
-      alone.restart();
-      alone.break_symmetry();
-    }
-    work_alone_ += alone.factorizations() * direction_work(*rod.model);
-  }
-  fraction_ = fraction;
+  std::vector<std::unique_ptr<Problem>> parts;
+  for (RobotRod& rod : robot_.rods)
+    if (rod.tip_held)
+      parts.push_back(std::make_unique<RodBetween>(*this, work_alone_, robot_, rod, rates_));
+  return parts;
+}
+
+void Equations::put_together() {
+  fraction_ = 1;
   prepare_rods();
-  return all;
 }
 
 void Equations::note(double value, Worst where, ProblemResidual& r) {

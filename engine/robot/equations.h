@@ -106,8 +106,9 @@ class Equations final : public Problem {
   /// column.
   void break_symmetry() override;
   void restart() override;
-  /// Rods one by one, between bodies that stay where they are.
-  bool bring_together(const SolveOptions& options) override;
+  /// Rods, between bodies that stay where they are.
+  std::vector<std::unique_ptr<Problem>> take_apart() override;
+  void put_together() override;
   std::string worst_row() const override;
 
   double growth() const override { return growth_; }
@@ -277,7 +278,7 @@ class Equations final : public Problem {
   double predicted_merit_ = 0;
   double growth_ = 0;
   long factorizations_ = 0;
-  long work_alone_ = 0;  ///< factorizations of rods by themselves
+  long work_alone_ = 0;  ///< in eliminating rods by themselves
 
   // kept
   RobotUnknowns kept_, start_, mark_, remembered_;

@@ -27,8 +27,11 @@ long direction_work(const RodModel& rod) {
   return n;
 }
 
-RodBetween::RodBetween(const Robot& robot, RobotRod& rod, const StageRates& rates)
-    : rod_(rod),
+RodBetween::RodBetween(const Problem& whole, long& eliminating, const Robot& robot, RobotRod& rod,
+                       const StageRates& rates)
+    : whole_(whole),
+      eliminating_(eliminating),
+      rod_(rod),
       rates_(rates),
       base_(robot.port(rod.base)),
       tip_(robot.port(rod.tip)),
@@ -45,6 +48,7 @@ ProblemResidual RodBetween::evaluate() {
 bool RodBetween::find_direction(double mu) {
   CondensedRod c;
   ++factorizations_;
+  eliminating_ += direction_work(*rod_.model);
   if (!rod_.model->linearize(base_, tip_, c)) return false;
   growth_ = c.growth;
   const MatX T = c.T.topLeftCorner(freedoms_, freedoms_);

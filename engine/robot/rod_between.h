@@ -15,8 +15,11 @@ long direction_work(const RodModel& rod);
 
 class RodBetween final : public Problem {
  public:
-  /// @param rod prepared for the instant; its model ends where the solver leaves it
-  RodBetween(const Robot& robot, RobotRod& rod, const StageRates& rates);
+  /// @param whole       what the rod is a part of, whose work() counts
+  /// @param eliminating where the work of eliminating it is added up
+  /// @param rod         prepared for the instant; its model ends where the solver leaves it
+  RodBetween(const Problem& whole, long& eliminating, const Robot& robot, RobotRod& rod,
+             const StageRates& rates);
 
   ProblemResidual evaluate() override;
   bool find_direction(double mu) override;
@@ -51,15 +54,15 @@ class RodBetween final : public Problem {
 
   long section_evaluations() const override { return rod_.model->section_evaluations(); }
 
-  long work() const override {
-    return section_evaluations() + factorizations_ * direction_work(*rod_.model);
-  }
+  long work() const override { return whole_.work(); }
 
   long factorizations() const override { return factorizations_; }
 
  private:
   void prepare();
 
+  const Problem& whole_;
+  long& eliminating_;
   RobotRod& rod_;
   const StageRates& rates_;
   Port base_, tip_;

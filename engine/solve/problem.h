@@ -3,11 +3,11 @@
 // problem easier. It knows no robot. Every row is dimensionless.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace cprsim {
-
-struct SolveOptions;
 
 struct ProblemResidual {
   double merit = 0;    ///< half the sum of squared rows
@@ -53,8 +53,11 @@ class Problem {
   /// Back to the unknowns the scene starts from.
   virtual void restart() = 0;
 
-  /// Brings parts together, unloaded, that can be each by itself. @return whether all of them are
-  virtual bool bring_together(const SolveOptions&) { return false; }
+  /// Parts, unloaded, that can be brought to their places each by itself; what they have come to
+  /// is where the problem goes on from put_together().
+  virtual std::vector<std::unique_ptr<Problem>> take_apart() { return {}; }
+
+  virtual void put_together() {}
 
   virtual std::string worst_row() const = 0;
   virtual double growth() const = 0;

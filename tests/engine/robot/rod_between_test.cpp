@@ -34,7 +34,8 @@ const Pose kTip{exp_so3(Vec3(-0.12, 0.1, 0.3)), {0.05, -0.03, 0.93}};
 SolveReport bring(Robot& robot, double* residual = nullptr) {
   Equations equations(robot, 1e-9);
   equations.set_instant(0, true, StageRates{});
-  RodBetween alone(robot, robot.rods[0], equations.rates());
+  long eliminating = 0;
+  RodBetween alone(equations, eliminating, robot, robot.rods[0], equations.rates());
   const SolveReport report = solve_statics(alone, {});
   if (residual) *residual = alone.evaluate().largest;
   return report;
