@@ -17,3 +17,6 @@ if command -v clang++ >/dev/null; then export CXX=clang++; fi
 cmake -S . -B build-sanitize -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCPRSIM_SANITIZE=ON -DCPRSIM_BENCHMARKS=OFF
 cmake --build build-sanitize
 ctest --test-dir build-sanitize --output-on-failure
+
+echo "== both builds say the same"
+python3 tests/system/builds_agree.py build/bin/cprsim build-sanitize/bin/cprsim

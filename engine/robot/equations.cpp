@@ -8,6 +8,7 @@
 
 #include "engine/math/so3.h"
 #include "engine/model/flight.h"
+#include "engine/robot/rod_between.h"
 #include "engine/solve/phase_clock.h"
 
 namespace cprsim {
@@ -188,6 +189,21 @@ void Equations::restart() {
   gaps_captured_ = false;
   prepare_rods();
   evaluate();
+}
+
+std::vector<std::unique_ptr<Problem>> Equations::take_apart() {
+  fraction_ = 0;  // without loads; gaps are the rods' own
+  prepare_rods();
+  std::vector<std::unique_ptr<Problem>> parts;
+  for (RobotRod& rod : robot_.rods)
+    if (rod.tip_held)
+      parts.push_back(std::make_unique<RodBetween>(*this, work_alone_, robot_, rod, rates_));
+  return parts;
+}
+
+void Equations::put_together() {
+  fraction_ = 1;
+  prepare_rods();
 }
 
 void Equations::note(double value, Worst where, ProblemResidual& r) {

@@ -89,6 +89,10 @@ class Equations final : public Problem {
 
   void return_to_mark() override { set_unknowns(mark_); }
 
+  void remember() override { remembered_ = unknowns(); }
+
+  void recall() override { set_unknowns(remembered_); }
+
   void set_fraction(double fraction) override;
   void set_relaxation(double drag) override;
   /// The same towards what was last marked.
@@ -102,6 +106,9 @@ class Equations final : public Problem {
   /// column.
   void break_symmetry() override;
   void restart() override;
+  /// Rods, between bodies that stay where they are.
+  std::vector<std::unique_ptr<Problem>> take_apart() override;
+  void put_together() override;
   std::string worst_row() const override;
 
   double growth() const override { return growth_; }
@@ -271,9 +278,10 @@ class Equations final : public Problem {
   double predicted_merit_ = 0;
   double growth_ = 0;
   long factorizations_ = 0;
+  long work_alone_ = 0;  ///< in eliminating rods by themselves
 
   // kept
-  RobotUnknowns kept_, start_, mark_;
+  RobotUnknowns kept_, start_, mark_, remembered_;
 };
 
 }  // namespace cprsim

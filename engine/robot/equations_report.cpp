@@ -4,6 +4,7 @@
 
 #include "engine/math/state_text.h"
 #include "engine/robot/equations.h"
+#include "engine/robot/rod_between.h"
 
 namespace cprsim {
 
@@ -42,21 +43,11 @@ long Equations::section_evaluations() const {
   return sum;
 }
 
-// To linearise and eliminate a rod costs for each unknown of shooting about what an evaluation of a
-// section does; collocation has a band, the strain basis a full matrix, of whose products that many
-// cost the same.
 long Equations::work() const {
-  constexpr long kBandProducts = 500, kFullProducts = 1000;
-  constexpr long kFields = 13;  // pose, force and moment of a point
   long direction = 0;
-  for (const RobotRod& rod : robot_.rods) {
-    const RodResolution how = rod.model->resolution();
-    const long n = rod.model->unknown_count(), band = kFields * (how.order + 1);
-    direction += n;
-    if (how.method == Method::kStrain) direction += n * n * n / kFullProducts;
-    if (how.method == Method::kCollocation) direction += n * band * band / kBandProducts;
-  }
-  return section_evaluations() + factorizations_ * direction;
+  for (const RobotRod& rod : robot_.rods)
+    direction += direction_work(*rod.model);
+  return section_evaluations() + factorizations_ * direction + work_alone_;
 }
 
 int Equations::unknown_count() const {

@@ -74,7 +74,9 @@ Vec6 RodEnd::value(const NodeState& end, const Port& port, const RodScale& scale
       r.tail<3>() = log_so3(Q);
       break;
     case Kind::kRevolute:
-      r.tail<3>() << e1_.dot(Q * a_), e2_.dot(Q * a_), m.dot(port.R * a_);
+      // about the axis that the rod carries: a rod that spins freely at both ends then says 0 = 0
+      // on the way to its shape as well, not only there
+      r.tail<3>() << e1_.dot(Q * a_), e2_.dot(Q * a_), m.dot(R * a_);
       break;
     case Kind::kUniversal:
       r.tail<3>() << a_.dot(Q * b_), m.dot(port.R * a_), m.dot(R * b_);
@@ -121,8 +123,9 @@ EndRows RodEnd::rows(const NodeState& end, const Port& port, const RodScale& sca
       const Vec3 Qa = Q * a_;
       angle_row(3, Qa.cross(e1_).transpose());
       angle_row(4, Qa.cross(e2_).transpose());
-      rows.by_state.block<1, 3>(5, 9) = a_W.transpose() / scale.moment;
-      rows.by_body.block<1, 3>(5, 0) = a_W.cross(m).transpose();
+      const Vec3 carried = R * a_;
+      rows.by_state.block<1, 3>(5, 9) = carried.transpose() / scale.moment;
+      rows.by_state.block<1, 3>(5, 0) = carried.cross(m).transpose();
       break;
     }
     case Kind::kUniversal:

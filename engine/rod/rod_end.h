@@ -3,7 +3,7 @@
 // wrench as it frees. With joint frame J (on the body) and end frame E (on the rod), Q = R_J^T R_E:
 //   position held always       R_J^T (p_E - p_J) = 0
 //   fixed                      log Q = 0
-//   revolute about a           Q a = a (two rows),                m · R_J a = 0
+//   revolute about a           Q a = a (two rows),                m · R_E a = 0
 //   universal about a, then b  a · Q b = 0,     m · R_J a = 0,    m · R_E b = 0
 //   ball                       m = 0
 //   free                       n = 0, m = 0

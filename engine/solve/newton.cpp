@@ -217,8 +217,6 @@ SolveReport levenberg_marquardt(Problem& problem, const SolveOptions& options) {
   }
 }
 
-namespace {
-
 void add_counts(SolveReport& total, const SolveReport& part) {
   total.iterations += part.iterations;
   total.evaluations += part.evaluations;
@@ -229,8 +227,6 @@ void add_counts(SolveReport& total, const SolveReport& part) {
   total.growth = part.growth;
   total.worst_row = part.worst_row;
 }
-
-}  // namespace
 
 SolveReport continuation(Problem& problem, const SolveOptions& options) {
   SolveReport total;
@@ -290,26 +286,32 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
   inner.tolerance = 1e-6;
   // assembly gaps close first, under strong drag; then the drag follows the residual, down as it
   // falls and up as it grows, which is what leads away from an unstable equilibrium
-  constexpr int kSteps = 400;
+  constexpr int kSteps = 400, kFew = 8;
   constexpr double kNoDrag = 1e-3;
   double drag = 10, fraction = options.assembled ? 1 : 0, last_residual = 0;
   for (int k = 0; k < kSteps; ++k) {
     const double target = std::min(1.0, fraction + 0.1);
     problem.set_fraction(target);
+    if (options.brisk) problem.remember();
     problem.set_relaxation(drag);
     const SolveReport part = newton(problem, inner);
     add_counts(total, part);
     if (!part.converged()) {
       drag *= 8;
       if (drag > 1e9 || part.status == SolveStatus::kWorkLimit) break;
+      if (options.brisk) {
+        problem.recall();
+        problem.evaluate();  // what drags is measured from there
+      }
       continue;
     }
     fraction = target;
     if (fraction < 1) continue;
     problem.set_relaxation(0);
     const double residual = problem.evaluate().largest;
-    if (last_residual > 0) drag *= std::clamp(residual / last_residual, 0.25, 2.0);
     const bool falling = residual < last_residual;
+    const bool easy = options.brisk && falling && part.iterations <= kFew;
+    if (last_residual > 0) drag *= std::clamp(residual / last_residual, 0.25, easy ? 0.5 : 2.0);
     last_residual = residual;
     const bool there = residual <= 10 * inner.tolerance || (falling && drag <= kNoDrag);
     if (!there) continue;
@@ -323,77 +325,6 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options) {
   total.residual = problem.evaluate().largest;
   total.worst_row = problem.worst_row();
   if (total.converged()) total.status = SolveStatus::kIterationLimit;
-  return total;
-}
-
-namespace {
-
-// Rods that stretch as easily as they bend can be brought together in a few steps; then they
-// harden.
-void soft_start(Problem& problem, const SolveOptions& options, SolveReport& total) {
-  SolveOptions rough;
-  rough.most_work = options.most_work;
-  rough.tolerance = 1e-2;
-  rough.max_iterations = 15;
-  for (const double softness : {2e-2, 2e-3}) {
-    problem.set_softness(softness);
-    add_counts(total, newton(problem, rough));
-  }
-  problem.set_softness(0);
-}
-
-}  // namespace
-
-SolveReport hardening(Problem& problem, const SolveOptions& options) {
-  SolveReport total;
-  total.stage = SolveStage::kContinuation;
-  SolveOptions rough = options;
-  rough.tolerance = std::max(options.tolerance, 1e-4);
-  rough.max_iterations = 15;
-  // half a decade at a time, to where rods are as stiff as they are for all purposes
-  for (double softness = 0.1; softness > 5e-6; softness /= std::sqrt(10.0)) {
-    problem.set_softness(softness);
-    add_counts(total, newton(problem, rough));
-  }
-  problem.set_softness(0);
-  add_counts(total, newton(problem, options));
-  return total;
-}
-
-SolveReport solve_statics(Problem& problem, const SolveOptions& options) {
-  struct Rung {
-    SolveReport (*solve)(Problem&, const SolveOptions&);
-    bool soft, bowed, gaping;  ///< gaping: only where parts must be brought together
-  };
-
-  const Rung rungs[] = {{newton, true, false, false},
-                        {newton, false, true, true},
-                        {levenberg_marquardt, true, false, false},
-                        {hardening, false, false, true},
-                        {continuation, false, false, false},
-                        {relaxation, false, true, true},
-                        {relaxation, true, false, true},
-                        {relaxation, false, false, false}};
-  SolveReport total;
-  const ProblemResidual first = problem.evaluate();
-  total.initial_residual = first.largest;
-  const bool gaping = problem.wants_soft_start() && first.largest > options.tolerance;
-  for (const Rung& rung : rungs) {
-    if (rung.gaping && !gaping) continue;
-    if (rung.bowed) {
-      problem.break_symmetry();
-      problem.evaluate();
-    }
-    if (rung.soft && gaping) soft_start(problem, options, total);
-    const SolveReport part = rung.solve(problem, options);
-    add_counts(total, part);
-    total.stage = part.stage;
-    if (part.converged()) return total;
-    problem.set_fraction(1);
-    problem.set_relaxation(0);
-    problem.restart();
-    if (total.status == SolveStatus::kWorkLimit) break;
-  }
   return total;
 }
 

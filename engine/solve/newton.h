@@ -28,6 +28,8 @@ struct SolveOptions {
   bool bold = false;
   /// relaxation() begins assembled and under full load, from a displaced equilibrium.
   bool assembled = false;
+  /// relaxation() halves its drag wherever Newton's method has no trouble following.
+  bool brisk = false;
 };
 
 /// Newton's method. A full step that lowers the merit is taken. One that raises it is given a
@@ -55,7 +57,8 @@ SolveReport relaxation(Problem& problem, const SolveOptions& options);
 /// newton, levenberg_marquardt, continuation, relaxation, in that order; the first that converges.
 /// Where parts must be brought together, newton and levenberg_marquardt begin from a rough solution
 /// with soft rods, newton a second time with rods bowed; hardening comes before continuation, and
-/// relaxation once from soft rods before it begins from the scene's own start.
+/// relaxation once from soft rods before it begins from the scene's own start. At last each part is
+/// brought to its place by itself, and newton and a brisk relaxation begin from there.
 /// No rung is begun once most_work is reached.
 SolveReport solve_statics(Problem& problem, const SolveOptions& options);
 

@@ -3,7 +3,9 @@
 // problem easier. It knows no robot. Every row is dimensionless.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace cprsim {
 
@@ -34,6 +36,9 @@ class Problem {
   virtual void mark() = 0;  ///< remembers the unknowns for longer: the watchdog's way back
   virtual void return_to_mark() = 0;
 
+  virtual void remember() = 0;  ///< the unknowns, for as long as a ladder's rung lasts
+  virtual void recall() = 0;
+
   /// Fraction of loads applied and of initial assembly gaps closed; 1 is the problem itself.
   virtual void set_fraction(double fraction) = 0;
   /// Drag towards the unknowns at the time of the call, in units of the robot's own stiffness; 0 is
@@ -47,6 +52,12 @@ class Problem {
   virtual void break_symmetry() = 0;
   /// Back to the unknowns the scene starts from.
   virtual void restart() = 0;
+
+  /// Parts, unloaded, that can be brought to their places each by itself; what they have come to
+  /// is where the problem goes on from put_together().
+  virtual std::vector<std::unique_ptr<Problem>> take_apart() { return {}; }
+
+  virtual void put_together() {}
 
   virtual std::string worst_row() const = 0;
   virtual double growth() const = 0;

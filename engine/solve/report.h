@@ -39,4 +39,7 @@ struct SolveReport {
   bool converged() const { return status == SolveStatus::kConverged; }
 };
 
+/// Adds up what parts of a solve took; how it ended is how the last one did.
+void add_counts(SolveReport& total, const SolveReport& part);
+
 }  // namespace cprsim

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mistakes.txt: each is told once, with its code, at its line and column.
+// mistakes.txt: each is told once, with its code, at its line and column. warnings.txt: what a
+// scene is told that is loaded all the same.
 #include <gtest/gtest.h>
 
 #include "tests/scenes/scene_text.h"
@@ -24,8 +25,8 @@ void take_mark(Mistake& mistake) {
   mistake.at_column = static_cast<int>(at - before);
 }
 
-std::vector<Mistake> mistakes() {
-  std::ifstream file(std::string(CPRSIM_SOURCE_DIR) + "/tests/scenes/mistakes.txt");
+std::vector<Mistake> mistakes(const std::string& name) {
+  std::ifstream file(std::string(CPRSIM_SOURCE_DIR) + "/tests/scenes/" + name);
   std::vector<Mistake> all;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#') continue;
@@ -51,8 +52,8 @@ std::vector<Mistake> mistakes() {
 }
 
 TEST(Mistakes, AreToldOnceWithCodeLineAndColumn) {
-  const std::vector<Mistake> all = mistakes();
-  EXPECT_GT(all.size(), 120U);
+  const std::vector<Mistake> all = mistakes("mistakes.txt");
+  EXPECT_GT(all.size(), 220U);
   for (const Mistake& mistake : all) {
     const LoadResult result = load_text(mistake.text);
     EXPECT_FALSE(result.scene) << mistake.line;
@@ -65,6 +66,22 @@ TEST(Mistakes, AreToldOnceWithCodeLineAndColumn) {
     EXPECT_EQ(first->line, mistake.at_line) << mistake.line << "\n" << to_text(*first);
     EXPECT_EQ(first->column, mistake.at_column) << mistake.line << "\n" << to_text(*first);
     EXPECT_FALSE(first->message.empty()) << mistake.line;
+  }
+}
+
+TEST(Warnings, AreToldWithCodeLineAndColumnAndTheSceneIsLoaded) {
+  const std::vector<Mistake> all = mistakes("warnings.txt");
+  EXPECT_GE(all.size(), 14U);
+  for (const Mistake& warning : all) {
+    const LoadResult result = load_text(warning.text);
+    EXPECT_TRUE(result.scene) << warning.line;
+    int told = 0;
+    for (const Diagnostic& d : result.diagnostics)
+      if (d.code == warning.code && d.line == warning.at_line && d.column == warning.at_column)
+        ++told;
+    EXPECT_EQ(told, 1) << warning.line;
+    // nor is it told where there is no reason
+    EXPECT_FALSE(has_code(load_text(scene_text()), warning.code)) << warning.line;
   }
 }
 

@@ -40,18 +40,21 @@ Number to_number(std::string_view text, int base_or_nothing = 10) {
   return number;
 }
 
+std::string head_of(const Checkpoint& c) {
+  const std::uint64_t check = fnv1a(c.outputs, fnv1a(c.simulation));
+  return fmt::format(
+      "{}\nscene {}\nprogram {}\ntime {}\nsimulation {}\noutputs {}\ncheck {:016x}\n", kMagic,
+      c.scene_hash, c.program, shortest(c.time), c.simulation.size(), c.outputs.size(), check);
+}
+
 }  // namespace
 
 std::string to_text(const Checkpoint& c) {
-  const std::uint64_t check = fnv1a(c.outputs, fnv1a(c.simulation));
-  return fmt::format(
-             "{}\nscene {}\nprogram {}\ntime {}\nsimulation {}\noutputs {}\ncheck {:016x}\n",
-             kMagic, c.scene_hash, c.program, shortest(c.time), c.simulation.size(),
-             c.outputs.size(), check) +
-         c.simulation + c.outputs;
+  return head_of(c) + c.simulation + c.outputs;
 }
 
 Checkpoint parse_checkpoint(std::string_view text) {
+  const std::string_view whole = text;
   Checkpoint c;
   if (!take_line(text, kMagic).empty()) throw StateError("not a state of this program");
   c.scene_hash = take_line(text, "scene");
@@ -64,7 +67,8 @@ Checkpoint parse_checkpoint(std::string_view text) {
     throw StateError("cut off, or longer than it says");
   c.simulation = text.substr(0, simulation);
   c.outputs = text.substr(simulation);
-  if (fnv1a(c.outputs, fnv1a(c.simulation)) != check)
+  // the check is of what follows the head; the head is what this program writes, or was changed
+  if (fnv1a(c.outputs, fnv1a(c.simulation)) != check || !whole.starts_with(head_of(c)))
     throw StateError("changed since it was written");
   return c;
 }

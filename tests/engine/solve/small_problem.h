@@ -74,6 +74,10 @@ class SmallProblem final : public Problem {
 
   void return_to_mark() override { x = mark_; }
 
+  void remember() override { remembered_ = x; }
+
+  void recall() override { x = remembered_; }
+
   void set_fraction(double fraction) override {
     fraction_ = fraction;
     fractions.push_back(fraction);
@@ -105,7 +109,7 @@ class SmallProblem final : public Problem {
  private:
   Function f_;
   Jacobian J_;
-  VecX start_, kept_, mark_, r_, d_, relaxed_from_, x_linear_, r_linear_;
+  VecX start_, kept_, mark_, remembered_, r_, d_, relaxed_from_, x_linear_, r_linear_;
   double fraction_ = 1, drag_ = 0;
   long evaluations_ = 0, factorizations_ = 0;
 };
