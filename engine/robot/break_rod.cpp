@@ -7,13 +7,6 @@
 namespace cprsim {
 namespace {
 
-// What is fastened to the material would be pulled through the base.
-void refuse_length_drive(const RobotRod& rod, const std::string& why) {
-  if (rod.length_drive)
-    throw std::invalid_argument("the length of rod '" + rod.spec->name +
-                                "' cannot be driven: " + why);
-}
-
 void break_within(RobotRod& rod, double s) {
   if (s > 0 && s < 1) rod.break_at(s);
 }
@@ -22,7 +15,6 @@ void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
   for (std::size_t k = 0; k < scene.tendons.size(); ++k) {
     const TendonSpec& spec = scene.tendons[k];
     if (spec.rod != static_cast<int>(index)) continue;
-    refuse_length_drive(rod, "tendon '" + spec.name + "' runs along it");
     RobotTendon tendon{static_cast<int>(k), &spec, nullptr};
     for (const DriveSpec& drive : scene.drives)
       if (drive.tendon == tendon.index) tendon.drive = &drive;
@@ -34,10 +26,6 @@ void add_tendons(const Scene& scene, std::size_t index, RobotRod& rod) {
 
 // What is not smooth along the rod is a station of it.
 void add_line_loads(RobotRod& rod) {
-  if (rod.line_loads.empty()) return;
-  if (rod.length_drive)
-    throw std::invalid_argument("rod '" + rod.spec->name +
-                                "' has a load along it, and a length drive, too");
   for (const LoadSpec* load : rod.line_loads) {
     break_within(rod, load->rod_s);
     break_within(rod, *load->to);
@@ -46,7 +34,6 @@ void add_line_loads(RobotRod& rod) {
 
 void add_magnets(RobotRod& rod) {
   if (!rod.magnetic) return;
-  refuse_length_drive(rod, "it is magnetised");
   for (const MagnetSpec& magnet : rod.spec->magnets) {
     break_within(rod, magnet.from);
     break_within(rod, magnet.to);
@@ -54,8 +41,6 @@ void add_magnets(RobotRod& rod) {
 }
 
 void add_disks(RobotRod& rod) {
-  if (rod.spec->disks.empty()) return;
-  refuse_length_drive(rod, "it carries disks");
   for (const DiskSpec& disk : rod.spec->disks)
     rod.break_at(disk.s);
 }
@@ -70,7 +55,10 @@ void add_ties(const Scene& scene, std::size_t index, RobotRod& rod) {
     if (tie.rod == static_cast<int>(index)) add(tie.s);
     if (tie.other == static_cast<int>(index)) add(tie.other_s);
   }
-  if (rod.tied) refuse_length_drive(rod, "it is tied to another");
+  // of two rods that are fed unlike, what is tied would have to slide
+  if (rod.tied && rod.length_drive)
+    throw std::invalid_argument("the length of rod '" + rod.spec->name +
+                                "' cannot be driven: it is tied to another");
 }
 
 }  // namespace

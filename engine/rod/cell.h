@@ -90,11 +90,14 @@ struct CellModel : CellSection {
   bool rotary = false;
   double c_v = 0, c_w = 0;  ///< engine/time/scheme.h, for the rotary term and a fluid
   bool body_rates = false;  ///< rotation vector rates pass through J_r (all but generalised-alpha)
-  FluidSection* fluid = nullptr;         ///< of the cell's stages, for the laws of a fluid
-  bool loaded = false;                   ///< whether these have moments per length, too
+  FluidSection* fluid = nullptr;      ///< of the cell's stages, for the laws of a fluid
+  bool loaded = false;                ///< whether these have moments per length, too
   const OuterField* field = nullptr;  ///< what magnetised ones of these are in, if any
   TendonSection* tendons =
       nullptr;  ///< of the cell's stages; only read where tendons are part of the law
+  /// Likewise, and by linearize_wide() alone: what the columns of Y add to the residuals (5), (6),
+  /// lifted × kWide; null: nothing.
+  const double* sources = nullptr;
 };
 
 /// One stage: inputs of the balance, unknowns, and what the last evaluation found.

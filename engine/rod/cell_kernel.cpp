@@ -273,6 +273,11 @@ struct Linearization {
         put_rows(rows, 3 * S + 3 * j, st[j].residual_v);
       }
     }
+    if constexpr (has_tendons(law) && NC == kWide)
+      if (M.sources)
+        for (int i = 0; i < kLifted; ++i)
+          for (int c = 0; c < NC; ++c)
+            law_rows[i][kLifted + c] += M.sources[i * NC + c];
   }
 
   void put_rows(const Rows<W>& rows, int first, const double* residual) {

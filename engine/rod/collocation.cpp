@@ -245,7 +245,7 @@ void CollocationRod::list_sections() {
 void CollocationRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   rates_ = rates;
   forcing_ = forcing;
-  if (tendons_) tendons_->set(forcing.tendons);
+  if (tendons_) tendons_->set(forcing.tendons, forcing.length);
   assert(forcing_.loads.size() == station_of_.size());
   fluid_.prepare(section_, sections_, rates, forcing_, track_);
   set_coefficients(section_, model_);

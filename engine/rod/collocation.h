@@ -161,12 +161,20 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   Eigen::Index freedoms() const override { return space_.freedoms(); }
 
   void describe_tendons(const Site& at, RodField& field) const;
-  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
-  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
-  void find_direction(const Vec6& z, const Vec6& zeta_A);
-  VecX found_direction() const;
-  void add_tension(Eigen::Index unknown, bool add) override;
-  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out,
+                       TensionPorts& ports) override {
+    return condense(base, tip, out, &ports);
+  }
+
+  bool condense(const Port& base, const Port& tip, CondensedRod& out, TensionPorts* tensions);
+
+  OpenPorts* ports_of_forces() override { return force_columns() > 0 ? &touch_->ports() : nullptr; }
+
+  void find_directions(const MatX& cases, MatX& directions) override;
+  void strain_rates(const Eigen::Ref<const VecX>& direction,
+                    std::vector<Vec6>& rates) const override;
+  void assemble_tensions();
 
   // contact, at the ends of the pieces
   const std::vector<NodeState>& grid_nodes() const override { return touch_nodes_; }
@@ -183,6 +191,14 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
 
   ContactScale scale_of_contacts() const override;
 
+  /// Of unknowns of tendons: dense columns behind those of forces.
+  int tension_columns() const {
+    return finds_tensions() ? static_cast<int>(tendons_->unknowns()) : 0;
+  }
+
+  /// Dense columns.
+  int given() const { return affine() + 1 + force_columns() + tension_columns(); }
+
   /// Of the forces of contacts: dense columns behind the affine one.
   int force_columns() const { return touch_ ? static_cast<int>(touch_->columns()) : 0; }
 
@@ -194,7 +210,7 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   void update_touch_nodes();
   void assemble_contacts(const ConditionRows& base_rows);
   NodalContacts::ByForces contact_loads(std::size_t node) const;
-  void describe_contacts();
+  void describe_contacts(TensionPorts* tensions);
 
   bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
 
@@ -321,7 +337,6 @@ class CollocationRod final : public RodModel, private TensionedRod, private Cont
   EffectPart<RodTendons> tendons_;  ///< sections: points
   TendonBorder border_;
   VecX tension_direction_;
-  std::vector<Vec13> kept_residual_;
   EffectPart<RodDisks> disks_;  ///< null: none
 };
 

@@ -49,12 +49,10 @@ void CollocationRod::assemble_contacts(const ConditionRows& base_rows) {
   }
 }
 
-void CollocationRod::describe_contacts() {
-  const Eigen::Index forces = force_columns();
+void CollocationRod::describe_contacts(TensionPorts* tensions) {
   // the base's increment is zeta_A's dense column only where it moves
-  const Eigen::Index given = affine() + 1 + forces;
-  MatX w = MatX::Zero(given, 13 + forces);
-  w.rightCols(given).setIdentity();
+  MatX w = MatX::Zero(given(), last_.cols());
+  w.rightCols(given()).setIdentity();
   const MatX x = system_.substitute(last_, w);
   const Vec13 units = increment_units();
   std::vector<MatX> moves(touch_nodes_.size());
@@ -63,7 +61,7 @@ void CollocationRod::describe_contacts() {
     moves[k] =
         (units.asDiagonal() * MatX(increments_ * x.middleRows(at, width()))).middleRows<6>(1);
   }
-  touch_->describe_motions(moves);
+  touch_->describe_motions(moves, tensions ? &tensions->motions : nullptr);
 }
 
 }  // namespace cprsim

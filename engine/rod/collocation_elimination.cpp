@@ -113,7 +113,7 @@ void CollocationRod::find_band() {
 
 void CollocationRod::assemble(const Port& base) {
   const int d = static_cast<int>(space_.freedoms());
-  system_.reset(columns() - d, columns(), lower_, upper_, affine() + 1 + force_columns());
+  system_.reset(columns() - d, columns(), lower_, upper_, given());
   assemble_base(base);
   int row = d + 1;
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
@@ -130,15 +130,17 @@ void CollocationRod::assemble(const Port& base) {
     for (int i = 0; i < width(); ++i)
       system_.dense(row++, affine()) = values[i];
   }
+  if (finds_tensions()) assemble_tensions();
 }
 
 // d rows remain on the last control point's 2d unknowns (phi, dp, dn, dm).
 bool CollocationRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
   return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
-                          : linearize_given(base, tip, out);
+                          : condense(base, tip, out, nullptr);
 }
 
-bool CollocationRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
+bool CollocationRod::condense(const Port& base, const Port& tip, CondensedRod& out,
+                              TensionPorts* tensions) {
   const Eigen::Index d = space_.freedoms();
   base_moves_ = base_.held() && base.moves;
   assemble(base);
@@ -146,28 +148,29 @@ bool CollocationRod::linearize_given(const Port& base, const Port& tip, Condense
   if (!system_.eliminate(columns() - static_cast<int>(2 * d))) return false;
   MatX general;
   if (!general_solution(system_.remaining(), system_.remaining_dense(), general)) return false;
-  const int forces = force_columns(), given = affine() + 1 + forces;
-  last_ = MatX::Zero(2 * d, 2 * d + 1 + forces);
+  const int forces = force_columns(), pulls = tension_columns();
+  last_ = MatX::Zero(2 * d, 2 * d + 1 + forces + pulls);
   last_.leftCols(d) = general.leftCols(d);
-  last_.rightCols(given) = general.rightCols(given);
+  last_.rightCols(given()) = general.rightCols(given());
 
   const NodeState end = tip_state();
   MatX Y = passing(-load_by_motion(pieces_.size(), Mat3(rotation_of(end)))) *
            increment_units().tail<12>().asDiagonal() * space_.state * last_;
-  OpenPorts* const ports = forces > 0 ? &touch_->ports() : nullptr;
-  if (ports) {
-    Y.bottomRightCorner(6, forces) -= contact_loads(pieces_.size());
-    ports->WA_F.setZero(6, forces);
+  const MorePorts more{forces > 0 ? &touch_->ports() : nullptr, tensions, pulls};
+  if (more.forces) {
+    Y.block(6, 2 * d + 1, 6, forces) -= contact_loads(pieces_.size());
+    more.forces->WA_F.setZero(6, forces);
   }
+  if (tensions) tensions->WA.setZero(d, pulls);
   ConditionRows rows = tip_.rows(end, tip, scale_);
   rows.value -= tip_gap_;
-  condense_tip(space_, rows, tip_.held(), end, tip, Y, out, ports);
+  condense_tip(space_, rows, tip_.held(), end, tip, Y, out, more);
   out.WA_z.setZero();
   out.WA_A.setZero();
   out.wa.setZero();
   const NodeState start = base_state();
-  if (base_moves_) condense_base(space_, start, base, base_columns(start), out, ports);
-  if (ports) describe_contacts();
+  if (base_moves_) condense_base(space_, start, base, base_columns(start), out, more);
+  if (more.forces) describe_contacts(tensions);
   out.growth = 0;
   return true;
 }
@@ -175,13 +178,12 @@ bool CollocationRod::linearize_given(const Port& base, const Port& tip, Condense
 /// The state before a load at the base, by back-substitution of all columns.
 MatX CollocationRod::base_columns(const NodeState& start) const {
   const Eigen::Index d = space_.freedoms();
-  const Eigen::Index given = d + 1 + force_columns();
-  MatX w = MatX::Zero(given, d + given);
-  w.rightCols(given).setIdentity();
+  MatX w = MatX::Zero(given(), d + given());
+  w.rightCols(given()).setIdentity();
   MatX Y = passing(load_by_motion(0, Mat3(rotation_of(start)))) *
            increment_units().tail<12>().asDiagonal() * space_.state *
            system_.substitute(last_, w).middleRows(1, 2 * d);
-  if (force_columns() > 0) Y.bottomRightCorner(6, force_columns()) += contact_loads(0);
+  if (force_columns() > 0) Y.block(6, 2 * d + 1, 6, force_columns()) += contact_loads(0);
   return Y;
 }
 
@@ -194,23 +196,17 @@ Vec6 CollocationRod::wrench_on_tip(const Port& tip) const {
 }
 
 void CollocationRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
-  if (!finds_tensions()) {
-    find_direction(z, zeta_A);
-    return;
-  }
-  const VecX all = border_.direction(z, zeta_A);
-  direction_.resize(control_.size());
-  for (std::size_t k = 0; k < control_.size(); ++k)
-    direction_[k] = all.segment<13>(13 * static_cast<Eigen::Index>(k));
-  tension_direction_ = all.tail(tendons_->unknowns());
-}
-
-void CollocationRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
   const Eigen::Index d = space_.freedoms();
-  const int forces = force_columns();
-  VecX all(2 * d + 1 + forces);
-  all << z.head(d), zeta_A.head(d), 1, forces > 0 ? touch_->direction() : VecX(0);
-  const MatX x = system_.substitute(last_ * all, all.tail(affine() + 1 + forces));
+  const VecX forces = force_columns() > 0 ? touch_->direction() : VecX(0);
+  VecX all;
+  if (finds_tensions()) {
+    all = border_.complete(z, zeta_A, forces);
+    tension_direction_ = border_.tensions(*tendons_);
+  } else {
+    all.resize(2 * d + 1 + forces.size());
+    all << z.head(d), zeta_A.head(d), 1, forces;
+  }
+  const MatX x = system_.substitute(last_ * all, all.tail(given()));
   const Vec13 units = increment_units();
   direction_.resize(control_.size());
   for (std::size_t k = 0; k < control_.size(); ++k)

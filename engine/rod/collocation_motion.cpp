@@ -163,7 +163,14 @@ void CollocationRod::start_tracks() {
 // engine/rod/collocation_point.h say what it is of the strains.
 void CollocationRod::start_tracks_moving() {
   start_tracks();
-  if (tendons_) tendons_->start_track_moving(strain_rates(found_direction()));
+  if (tendons_) {
+    VecX all(13 * static_cast<Eigen::Index>(direction_.size()));
+    for (std::size_t k = 0; k < direction_.size(); ++k)
+      all.segment<13>(13 * static_cast<Eigen::Index>(k)) = direction_[k];
+    std::vector<Vec6> rates;
+    strain_rates(all, rates);
+    tendons_->start_track_moving(rates);
+  }
   const auto n = static_cast<Eigen::Index>(points_.size());
   std::vector<Vec13> moving = control_;
   for (std::size_t k = 0; k < control_.size(); ++k) {

@@ -161,6 +161,7 @@ RodEnergy CollocationRod::energy() const {
                stretch = v - Vec3(0, 0, 1 + forcing_.heat.stretch);
     return 0.5 * (bent.dot(own.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
   };
+  double carried = 0;
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const double weight = weights_[j] * forcing_.length;
     const CollocationPoint& point = points_[j];
@@ -173,6 +174,7 @@ RodEnergy CollocationRod::energy() const {
     }
     e.elastic += weight * elastic(own, point.u, point.v);
     e.gravity -= weight * own.weighing_mass() * forcing_.gravity.dot(point.p());
+    carried += weight * own_work(point.R, point.m(), point.n(), point.u, point.v, tendons_at(j));
     if (options_.drag || options_.line_loads)
       fluid_.add_power(j, point.R.col(2), weight, track_, e);
     if (!options_.damping) continue;
@@ -183,14 +185,9 @@ RodEnergy CollocationRod::energy() const {
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
   e.magnetic = magnetic_energy(forcing_.field);
+  e.set_feed_power(carried, forcing_.length, tendons_.get());
   if (touch_) e.damping_power += touch_->friction_power();
   if (disks_) disks_->add_energy(track_, e);
-  // per unit feed: the base section's traction works on the inflow, which brings strain energy and
-  // weight along; the first point is the base
-  const CollocationPoint& base = points_.front();
-  e.feed_power = elastic(section_, base.u, base.v) - (base.R.transpose() * base.n()).dot(base.v) -
-                 (base.R.transpose() * base.m()).dot(base.u) -
-                 section_.weighing_mass() * forcing_.gravity.dot(base.p());
   return e;
 }
 

@@ -38,53 +38,62 @@ void CollocationRod::describe_tendons(const Site& at, RodField& field) const {
   field.add_tendons(stiffness, held);
 }
 
-VecX CollocationRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
-  find_direction(z, zeta_A);
-  return found_direction();
-}
-
-VecX CollocationRod::found_direction() const {
-  VecX all(13 * static_cast<Eigen::Index>(direction_.size()));
-  for (std::size_t k = 0; k < direction_.size(); ++k)
-    all.segment<13>(13 * static_cast<Eigen::Index>(k)) = direction_[k];
-  return all;
-}
-
 // Rows (2), (3) of engine/rod/collocation_point.h; those of joins stand between the pieces.
-void CollocationRod::add_tension(Eigen::Index unknown, bool add) {
-  if (!add) {
-    residual_ = kept_residual_;
-    return;
-  }
-  kept_residual_ = residual_;
-  std::size_t row = 0;
+void CollocationRod::assemble_tensions() {
+  int row = static_cast<int>(space_.freedoms()) + 1;
+  const int first = affine() + 1 + force_columns();
   for (std::size_t g = 0; g < pieces_.size(); ++g) {
-    row += g > 0;
-    for (int i = 0; i < pieces_[g].points; ++i, ++row) {
+    if (g > 0) row += width();
+    for (int i = 0; i < pieces_[g].points; ++i, row += width()) {
       const auto j = static_cast<std::size_t>(pieces_[g].first_point + i);
-      const Vec6 Lambda = tendons_->per_unknown(unknown, j);
-      residual_[row].segment<3>(kQ + 1) += model(j).C_bt.cwiseProduct(Lambda.head<3>());
-      residual_[row].segment<3>(kP) += points_[j].R * model(j).C_se.cwiseProduct(Lambda.tail<3>());
+      for (int k = 0; k < tension_columns(); ++k) {
+        const Vec6 Lambda = tendons_->unit(k) * tendons_->per_unknown(k, j);
+        Vec13 by = Vec13::Zero();
+        by.segment<3>(kQ + 1) = model(j).C_bt.cwiseProduct(Lambda.head<3>());
+        by.segment<3>(kP) = points_[j].R * model(j).C_se.cwiseProduct(Lambda.tail<3>());
+        for (int r = 0; r < width(); ++r)
+          system_.dense(row + r, first + k) = rows_.row(r).dot(by);
+      }
     }
   }
 }
 
+/// Increments of all control points, one after another.
+void CollocationRod::find_directions(const MatX& cases, MatX& directions) {
+  const MatX x = system_.substitute(last_ * cases, cases.bottomRows(given()));
+  const Vec13 units = increment_units();
+  const auto n = static_cast<Eigen::Index>(control_.size());
+  directions.resize(13 * n, cases.cols());
+  for (Eigen::Index c = 0; c < cases.cols(); ++c)
+    for (Eigen::Index k = 0; k < n; ++k) {
+      Vec13 increment = Vec13::Zero();
+      for (int i = 0; i < width(); ++i)
+        increment += x(k * width() + i, c) * increments_.col(i);
+      directions.col(c).segment<13>(13 * k) = units.cwiseProduct(increment);
+    }
+}
+
 // du from row (2) of a point without compliance, dv = R^T (dp_s + p_s × phi).
-std::vector<Vec6> CollocationRod::strain_rates(const VecX& direction) const {
-  std::vector<Vec13> moving(control_.size());
-  for (std::size_t k = 0; k < control_.size(); ++k) {
+void CollocationRod::strain_rates(const Eigen::Ref<const VecX>& direction,
+                                  std::vector<Vec6>& rates) const {
+  // of a control point, and the derivative of its fields
+  const auto moving = [&](int k) {
     const Vec13 d = direction.segment<13>(13 * static_cast<Eigen::Index>(k));
-    moving[k] << quaternion_by_increment(Vec4(control_[k].head<4>())) * d.head<4>(), d.tail<9>();
-  }
+    Vec13 by;
+    by << quaternion_by_increment(Vec4(control_[static_cast<std::size_t>(k)].head<4>())) *
+              d.head<4>(),
+        d.tail<9>();
+    return by;
+  };
   PointModel rigid = model_;
   rigid.C_bt.setZero();
-  std::vector<Vec6> rates(points_.size());
+  rates.resize(points_.size());
   Mat13 by_y, by_y_s;
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const CollocationPoint& point = points_[j];
     Vec13 y = Vec13::Zero(), y_s = Vec13::Zero();
     for (int i = 0; i <= options_.degree; ++i) {
-      const Vec13& control = moving[static_cast<std::size_t>(sites_[j].basis.first + i)];
+      const Vec13 control = moving(sites_[j].basis.first + i);
       y += sites_[j].basis.value[i] * control;
       y_s += sites_[j].basis.slope[i] / forcing_.length * control;
     }
@@ -94,7 +103,6 @@ std::vector<Vec6> CollocationRod::strain_rates(const VecX& direction) const {
     rates[j] << (by_y * y + by_y_s * y_s).segment<3>(kQ + 1),
         point.R.transpose() * (y_s.segment<3>(kP) + p_s.cross(phi));
   }
-  return rates;
 }
 
 }  // namespace cprsim

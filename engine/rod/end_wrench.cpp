@@ -41,7 +41,7 @@ Vec6 wrench_on_tip(const MotionSpace& space, const NodeState& end, const Port& t
 
 void condense_tip(const MotionSpace& space, const ConditionRows& rows, bool held,
                   const NodeState& end, const Port& tip, const MatX& Y, CondensedRod& out,
-                  OpenPorts* ports) {
+                  const MorePorts& more) {
   const Eigen::Index d = space.freedoms();
   const MatX T = rows.by_state * Y;
   out.T.topLeftCorner(d, d) = T.leftCols(d);
@@ -58,20 +58,28 @@ void condense_tip(const MotionSpace& space, const ConditionRows& rows, bool held
   out.WB_z.topLeftCorner(d, d) = W.leftCols(d);
   out.WB_A.topLeftCorner(d, d) = W.middleCols(d, d);
   out.wb.head(d) = W.col(2 * d);
-  if (ports == nullptr) return;
-  ports->T_F = T.rightCols(Y.cols() - 2 * d - 1);
-  ports->WB_F = held ? MatX(W.rightCols(ports->T_F.cols())) : MatX::Zero(6, ports->T_F.cols());
+  const Eigen::Index forces = Y.cols() - 2 * d - 1 - more.unknowns;
+  if (!held) W.setZero(d, Y.cols());
+  if (more.forces) {
+    more.forces->T_F = T.middleCols(2 * d + 1, forces);
+    more.forces->WB_F = W.middleCols(2 * d + 1, forces);
+  }
+  if (!more.tensions) return;
+  more.tensions->T = T.rightCols(more.unknowns);
+  more.tensions->WB = W.rightCols(more.unknowns);
 }
 
 void condense_base(const MotionSpace& space, const NodeState& start, const Port& base,
-                   const MatX& Y, CondensedRod& out, OpenPorts* ports) {
+                   const MatX& Y, CondensedRod& out, const MorePorts& more) {
   const Eigen::Index d = space.freedoms();
   const MatX W = space.motion.transpose() * by_state(start, base) * Y;
   out.WA_z.topLeftCorner(d, d) = W.leftCols(d);
   out.WA_A.topLeftCorner(d, d) =
       W.middleCols(d, d) + space.motion.transpose() * by_body(start) * space.motion;
   out.wa.head(d) = W.col(2 * d) + space.motion.transpose() * wrench_on_base(space, start, base);
-  if (ports != nullptr) ports->WA_F = W.rightCols(Y.cols() - 2 * d - 1);
+  if (more.forces)
+    more.forces->WA_F = W.middleCols(2 * d + 1, W.cols() - 2 * d - 1 - more.unknowns);
+  if (more.tensions) more.tensions->WA = W.rightCols(more.unknowns);
 }
 
 }  // namespace cprsim

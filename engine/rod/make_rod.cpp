@@ -54,15 +54,11 @@ Pose section_frame(const RodPlan& plan) {
 
 std::unique_ptr<RodModel> make_shooting(const RodPlan& plan) {
   const RodSpec& spec = *plan.spec;
-  if (plan.plane) {
-    if (plan.along || !spec.rest_curvature.isZero(0))
-      throw std::invalid_argument("shooting in a plane knows rod '" + spec.name +
-                                  "' straight at rest and with even sections");
+  if (plan.plane)
     return std::make_unique<PlanarRod>(spec.name, hold_of(plan, spec.base, plan.X_WBase),
                                        hold_of(plan, spec.tip, plan.X_WTip), *plan.plane,
                                        plan.X_WBase, spin_frame(plan), plan.section, plan.length,
                                        shooting_options(plan));
-  }
   auto model = std::make_unique<ShootingRod>(spec.name, RodEnd(spec.base), RodEnd(spec.tip),
                                              plan.section, plan.length, shooting_options(plan));
   model->set_unloaded(plan.X_WBase);

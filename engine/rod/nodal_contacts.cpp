@@ -96,12 +96,13 @@ void NodalContacts::begin_rows() {
     row.slip.setZero();
 }
 
-void NodalContacts::describe_motions(const std::vector<MatX>& moves) {
+void NodalContacts::describe_motions(const std::vector<MatX>& moves, std::vector<MatX>* rest) {
   ports_.contacts.resize(contacts_.size());
   ports_.motions.resize(contacts_.size());
+  if (rest) rest->resize(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const RodContact& contact = contacts_[i];
-    MatX both = MatX::Zero(12, 13 + columns());
+    MatX both = MatX::Zero(12, moves[contact.cell].cols());
     both.topRows<6>() = moves[contact.cell];
     if (!contact.at_node()) both.bottomRows<6>() = moves[contact.cell + 1];
     ports_.contacts[i] = i;
@@ -109,7 +110,8 @@ void NodalContacts::describe_motions(const std::vector<MatX>& moves) {
     motion.by_z = both.leftCols<6>();
     motion.by_A = both.middleCols<6>(6);
     motion.value = both.col(12);
-    motion.by_F = both.rightCols(columns());
+    motion.by_F = both.middleCols(13, columns());
+    if (rest) (*rest)[i] = both.rightCols(both.cols() - 13 - columns());
   }
 }
 

@@ -75,9 +75,9 @@ class NodalContacts final : public TouchingRod {
   /// For the rows that are formed elsewhere: one for each contact.
   void begin_rows();
 
-  /// @param moves (phi, dp) of each node by [z; zeta_A; 1; F]; T_F, WA_F, WB_F are the rod's to
-  /// fill
-  void describe_motions(const std::vector<MatX>& moves);
+  /// @param moves (phi, dp) of each node by [z; zeta_A; 1; F], and by more, which `rest` takes, a
+  /// matrix for each contact; T_F, WA_F, WB_F are the rod's to fill
+  void describe_motions(const std::vector<MatX>& moves, std::vector<MatX>* rest = nullptr);
 
   OpenPorts& ports() { return ports_; }
 

@@ -53,16 +53,13 @@ PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Ma
       section_(section),
       options_(options),
       table_(&arc_tableau(options.integrator)),
-      grid_(arc_grid(options.cells, options.stations)) {
+      grid_(arc_grid(options.cells, options.stations, options.along.get())) {
   K_b_ = about_normal(section.K_bt);
-  B_b_ = options.damping ? about_normal(section.B_bt) : 0;
-  rhoI_ = about_normal(section.rhoJ);
-  K_v_ = {section.K_se.z(), along_section(section.K_se)};
-  B_v_ = options.damping ? Vec2(section.B_se.z(), along_section(section.B_se)) : Vec2(Vec2::Zero());
   cells_ = static_cast<int>(grid_.size()) - 1;
   extensible_ = options.extension || options.shear;
   const auto n = static_cast<std::size_t>(cells_ * table_->stages);
   stages_.assign(n, PlanarStage{});
+  list_sections();
   nodes_.assign(grid_.size(), PlanarNode{});
   load_at_ = nodes_at(grid_, options_.stations);
   const auto stages = static_cast<Eigen::Index>(n);
@@ -76,7 +73,7 @@ PlanarRod::PlanarRod(std::string name, PlanarHold base, PlanarHold tip, const Ma
   forcing_.length = length;
   if (!options.tendons.empty()) place_tendons();
   const Vec3 tangent = plane_.transpose() * X_WBase.R.col(2);
-  set_straight(std::atan2(tangent.y(), tangent.x()), plane_.leftCols<2>().transpose() * X_WBase.p);
+  set_unloaded(std::atan2(tangent.y(), tangent.x()), plane_.leftCols<2>().transpose() * X_WBase.p);
 }
 
 void PlanarRod::place_surroundings() {
@@ -92,8 +89,8 @@ void PlanarRod::place_surroundings() {
 
 void PlanarRod::enter(std::size_t cell) {
   model_.h = (grid_[cell + 1] - grid_[cell]) * forcing_.length;
-  if (!around_ && !tendons_) return;
   model_.first = cell * static_cast<std::size_t>(table_->stages);
+  model_.sections = &coefficients_[model_.first];
   if (tendons_) model_.pulls = tendons_->at(model_.first);
   if (!around_) return;
   model_.around = around_->at(model_.first);
@@ -118,59 +115,22 @@ void PlanarRod::pass_disks(std::size_t node, PlanarNode& state) const {
   }
 }
 
-double PlanarRod::about_normal(const Vec3& diagonal) const {
-  const Vec3 normal = offset_.row(2);
-  return normal.dot(diagonal.cwiseProduct(normal));
-}
-
-double PlanarRod::along_section(const Vec3& diagonal) const {
-  const Vec3 across = offset_.row(1);
-  return across.dot(diagonal.cwiseProduct(across));
-}
-
-void PlanarRod::set_straight(double theta, const Vec2& p) {
-  PlanarNode state{};
-  state.theta = theta;
-  state.c = std::cos(theta);
-  state.s = std::sin(theta);
-  state.p[0] = p.x();
-  state.p[1] = p.y();
-  starts_.assign(1, state);
-  segment_first_ = {0, static_cast<std::size_t>(cells_)};
-  for (PlanarStage& stage : stages_) {
-    stage.kappa = 0;
-    stage.v[0] = 1;
-    stage.v[1] = 0;
-  }
-  for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    nodes_[k] = state;
-    nodes_[k].p[0] += state.c * grid_[k] * forcing_.length;
-    nodes_[k].p[1] += state.s * grid_[k] * forcing_.length;
-  }
-  evaluated_ = false;
-}
-
 void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   rates_ = rates;
   forcing_ = forcing;
   assert(forcing_.loads.size() == load_at_.size());
   const double L = forcing_.length;
   model_.table = table_;
-  model_.C_b = 1 / (K_b_ + rates.c_v * B_b_);
-  // rigid modes are zeros: shear and extension each only if the scene lists them
-  model_.C_v[0] = options_.extension ? 1 / (K_v_.x() + rates.c_v * B_v_.x()) : 0;
-  model_.C_v[1] = options_.shear ? 1 / (K_v_.y() + rates.c_v * B_v_.y()) : 0;
-  model_.C_v[0] += forcing_.axial_softness * L * L / K_b_;
-  model_.k = section_.rhoA * rates.c_v * rates.c_w + forcing_.relaxation;
-  const bool rotary = options_.rotary_inertia && rates.dynamic();
-  model_.k_J = rotary ? rhoI_ * rates.c_v * rates.c_w : 0;
+  set_coefficients(own_of(section_), model_);
+  for (std::size_t j = 0; j < own_.size(); ++j)
+    set_coefficients(own_[j], coefficients_[j]);
   const bool stretches = extensible_ || forcing.axial_softness > 0;
   law_ = !stretches      ? CellLaw::kKirchhoff
          : model_.k == 0 ? CellLaw::kExtensibleStatic
                          : CellLaw::kExtensible;
   double k = model_.k;
   if (around_) {
-    around_->prepare(section_, rates, forcing_, track_);
+    around_->prepare(section_, rates, forcing_, track_, sections_);
     model_.immersion = around_.get();
     const Immersion& fluid = around_->in_space();
     if (fluid.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
@@ -178,7 +138,7 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   }
   if (tendons_) {
     law_ = immersed(law_) ? CellLaw::kTendonsFluid : CellLaw::kTendons;
-    tendons_->in_space().set(forcing.tendons);
+    tendons_->in_space().set(forcing.tendons, L);
     model_.tendons = tendons_.get();
   }
   kernel_ = planar_kernel(table_->stages, law_);
@@ -194,35 +154,34 @@ void PlanarRod::prepare(const StageRates& rates, const RodForcing& forcing) {
 
 void PlanarRod::update_stage_inputs() {
   const auto n = static_cast<Eigen::Index>(stages_.size());
-  const Vec2 weight =
-      plane_.leftCols<2>().transpose() * (section_.weighing_mass() * forcing_.gravity);
+  const Vec2 gravity = plane_.leftCols<2>().transpose() * forcing_.gravity;
   const bool dynamic = rates_.dynamic();
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     PlanarStage& stage = stages_[j];
+    const Own& own = own_[j];
+    const PlanarSection& at = coefficients_[j];
     const auto i = static_cast<Eigen::Index>(j);
-    Vec2 b = -weight;
-    stage.kappa0 = 0;
+    Vec2 b = -own.weighing * gravity;
+    stage.kappa0 = at.C_b * own.K_b * (own.kappa_rest + heat_curvature());
     stage.v0[0] = 1;
     stage.v0[1] = stage.b_J = 0;
     if (dynamic) {
-      b += section_.rhoA *
-           (rates_.c_w * track_.x_h.segment<2>(2 * i) + track_.v_h.segment<2>(2 * i));
+      b += own.rhoA * (rates_.c_w * track_.x_h.segment<2>(2 * i) + track_.v_h.segment<2>(2 * i));
       if (options_.rotary_inertia)
-        stage.b_J = rhoI_ * (rates_.c_w * track_.x_h[angles_ + i] + track_.v_h[angles_ + i]);
+        stage.b_J = own.rhoI * (rates_.c_w * track_.x_h[angles_ + i] + track_.v_h[angles_ + i]);
       if (options_.damping) {
-        stage.kappa0 = -model_.C_b * B_b_ * track_.x_h[strains_ + i];
+        stage.kappa0 -= at.C_b * own.B_b * track_.x_h[strains_ + i];
         // v0 = C (K z - B v_h): with C = 1/(K + c_v B) this is z - C B (c_v z + v_h)
         if (extensible_) {
-          const Eigen::Index at = strains_ + n + 2 * i;
-          stage.v0[0] -= model_.C_v[0] * B_v_.x() * (rates_.c_v + track_.x_h[at]);
-          stage.v0[1] -= model_.C_v[1] * B_v_.y() * track_.x_h[at + 1];
+          const Eigen::Index of = strains_ + n + 2 * i;
+          stage.v0[0] -= at.C_v[0] * own.B_v.x() * (rates_.c_v + track_.x_h[of]);
+          stage.v0[1] -= at.C_v[1] * own.B_v.y() * track_.x_h[of + 1];
         }
       }
     }
     if (forcing_.heat.stretch != 0) {
       // C K of the stretch that heat adds
-      const double B = options_.damping ? B_v_.x() : 0;
-      stage.v0[0] += (1 - rates_.c_v * model_.C_v[0] * B) * forcing_.heat.stretch;
+      stage.v0[0] += (1 - rates_.c_v * at.C_v[0] * own.B_v.x()) * forcing_.heat.stretch;
     }
     if (forcing_.relaxation > 0) b -= forcing_.relaxation * marked_[j];
     stage.b[0] = b.x();
@@ -246,16 +205,21 @@ void PlanarRod::update_stage_inputs() {
 // Segments from the growth exponent; cells are shared out evenly. Starts move to the nodes last
 // reached.
 void PlanarRod::choose_segments() {
-  constexpr double kNoTorsion = std::numeric_limits<double>::infinity();
-  const Vec3 K_bt(1 / model_.C_b, 1 / model_.C_b, kNoTorsion);
-  const auto stiffness = [&](double C) { return C > 0 ? 1 / C : 0; };
-  const Vec3 K_se(stiffness(model_.C_v[1]), 0, stiffness(model_.C_v[0]));
   double N = std::hypot(starts_.front().n[0], starts_.front().n[1]);
   if (evaluated_)
     for (const PlanarNode& node : nodes_)
       N = std::max(N, std::hypot(node.n[0], node.n[1]));
   const double around = around_ ? around_->in_space().stiffness() : 0;
-  growth_ = cprsim::growth_exponent(section_, K_bt, K_se, forcing_.length, model_.k + around, N);
+  const auto growth = [&](const SectionProperties& own, const PlanarSection& at) {
+    constexpr double kNoTorsion = std::numeric_limits<double>::infinity();
+    const auto stiffness = [](double C) { return C > 0 ? 1 / C : 0; };
+    return cprsim::growth_exponent(own, Vec3(1 / at.C_b, 1 / at.C_b, kNoTorsion),
+                                   Vec3(stiffness(at.C_v[1]), 0, stiffness(at.C_v[0])),
+                                   forcing_.length, at.k + around, N);
+  };
+  growth_ = growth(section_, model_);
+  for (std::size_t j = 0; j < sections_.size(); ++j)
+    growth_ = std::max(growth_, growth(sections_[j], coefficients_[j]));
   if (!disks_.empty()) {
     double k = model_.k;
     for (const Disk& disk : disks_)

@@ -99,7 +99,23 @@ class PlanarRod final : public RodModel, private TensionedRod {
 
   Place place(const Port& port) const;
   Vec3 end_value(PlanarHold hold, const PlanarNode& end, const Place& at, double noise) const;
-  void set_straight(double theta, const Vec2& p);
+
+  /// What motion in the plane meets of a section.
+  struct Own {
+    double K_b = 0, B_b = 0;  ///< bending
+    Vec2 K_v, B_v;            ///< stretch and shear
+    double rhoA = 0, weighing = 0, rhoI = 0;
+    double kappa_rest = 0;
+  };
+
+  void list_sections();
+  Own own_of(const SectionProperties& section) const;
+  void set_coefficients(const Own& own, PlanarSection& section) const;
+  void set_unloaded(double theta, const Vec2& p);
+
+  /// Of heat, about the normal.
+  double heat_curvature() const { return offset_.row(2).dot(forcing_.heat.curvature); }
+
   void choose_segments();
   void update_stage_inputs();
   void apply_load(std::size_t node, PlanarNode& state) const;
@@ -117,24 +133,37 @@ class PlanarRod final : public RodModel, private TensionedRod {
 
   Eigen::Index freedoms() const override { return 3; }
 
-  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
-  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
-  void find_direction(const Vec6& z, const Vec6& zeta_A);
-  VecX found_direction() const;
-  void take_direction(const VecX& direction);
-  void add_tension(Eigen::Index unknown, bool add) override;
-  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+  /// The tip's rows, and the wrench on its body, by the state there.
+  struct TipRows {
+    Eigen::Matrix<double, 3, 6> T = Eigen::Matrix<double, 3, 6>::Zero(), W = T;
+  };
+
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out,
+                       TensionPorts& ports) override {
+    return condense(base, tip, out, &ports);
+  }
+
+  bool condense(const Port& base, const Port& tip, CondensedRod& out, TensionPorts* tensions);
+  void find_directions(const MatX& cases, MatX& directions) override;
+  void find_direction_in_case(const Eigen::Ref<const VecX>& column);
+  void find_direction(const Vec3& z, const Vec3& zeta_A, double share);
+  void strain_rates(const Eigen::Ref<const VecX>& direction,
+                    std::vector<Vec6>& rates) const override;
+  void begin_pulled_columns();
+  bool sweep_pulled_columns(std::size_t cell);
+  void add_pulled_direction();
+  void close_pulled(const TipRows& rows, const Mat3& by_z_of_base, TensionPorts& ports);
   void describe_tendons(RodField& field) const;
 
   // linearisation
   void start_columns(const Place& base, double* Y) const;
-  void apply_load_columns(std::size_t node, const PlanarNode& state, double* Y) const;
+  void apply_load_columns(std::size_t node, const PlanarNode& state, double* Y, int columns) const;
   double weight_of(std::size_t stage) const;
   StrainsAtNodes strains_at_nodes() const;
   bool sweep_columns(const Place& base);
   void orthonormalize(std::size_t segment, const PlanarNode& reached, double* Y);
-  void close_tip(const Place& tip, const double* Y, CondensedRod& out) const;
-  void close_base(const Place& base, CondensedRod& out) const;
+  TipRows close_tip(const Place& tip, const double* Y, CondensedRod& out) const;
+  Mat3 close_base(const Place& base, CondensedRod& out) const;
 
   /// Inputs of a cell.
   void enter(std::size_t cell);
@@ -151,13 +180,14 @@ class PlanarRod final : public RodModel, private TensionedRod {
 
   std::string name_;
   PlanarHold base_, tip_;
-  Mat3 plane_;                ///< e1, e2, normal
-  Mat3 offset_;               ///< section axes in plane axes at theta = 0
-  double height_ = 0;         ///< of the rod's plane along the normal
-  double K_b_ = 0, B_b_ = 0;  ///< bending
-  Vec2 K_v_, B_v_;            ///< stretch and shear
-  double rhoI_ = 0;
-  SectionProperties section_;
+  Mat3 plane_;         ///< e1, e2, normal
+  Mat3 offset_;        ///< section axes in plane axes at theta = 0
+  double height_ = 0;  ///< of the rod's plane along the normal
+
+  double K_b_ = 0;                           ///< of the base
+  std::vector<Own> own_;                     ///< of the stages
+  SectionProperties section_;                ///< of the base, if they vary
+  std::vector<SectionProperties> sections_;  ///< of the stages; empty: the same everywhere
   ShootingOptions options_;
   const ArcTableau* table_;
   int cells_ = 0;
@@ -168,6 +198,7 @@ class PlanarRod final : public RodModel, private TensionedRod {
 
   // coefficients of the current solve
   PlanarModel model_;
+  std::vector<PlanarSection> coefficients_;  ///< of the stages
   StageRates rates_;
   RodForcing forcing_;
   RodScale scale_, port_scale_;
@@ -222,7 +253,25 @@ class PlanarRod final : public RodModel, private TensionedRod {
   std::unique_ptr<PlanarTendons> tendons_;   ///< sections: stages
   TendonBorder border_;
   VecX tension_direction_;
-  std::vector<PlanarStage> kept_stages_;  ///< while residuals are those of add_tension()
+
+  /// Columns of the tendons' unknowns, as those of engine/rod/shooting_open.h.
+  struct PulledColumns {
+    static constexpr int kUsed = 6;  ///< of a block
+    using Block = Eigen::Matrix<double, 6, kPlanarWide, Eigen::RowMajor>;
+
+    std::vector<Block> blocks;
+    std::vector<std::vector<Block>> at_segment;
+    std::vector<std::vector<Eigen::Matrix<double, 3, kUsed>>> G;  ///< as Recombination::G_A
+    std::vector<double> sources,
+        directions;  ///< block by block, cell by cell: lifted × kPlanarWide
+    VecX weights;    ///< of the direction
+
+    Vec6 weights_of(std::size_t block) const {
+      return weights.segment<kUsed>(kUsed * static_cast<Eigen::Index>(block));
+    }
+  };
+
+  PulledColumns pulled_;
   std::vector<Disk> disks_;
   Eigen::Index disk_angles_ = 0;  ///< where theirs begin, with rotary inertia
   long section_evaluations_ = 0;

@@ -36,18 +36,24 @@ struct PlanarPull {
 class PlanarImmersion;
 class PlanarTendons;
 
-/// What all cells of a rod share during one solve.
-struct PlanarModel {
-  const ArcTableau* table = nullptr;
-  double h = 0;                 ///< cell length, m
+/// Coefficients of a section during one solve.
+struct PlanarSection {
   double C_b = 0, C_v[2] = {};  ///< compliances of bending; of stretch C_a and shear C_s
   double k = 0, k_J = 0;        ///< N/m²; N
+};
+
+/// What all cells of a rod share during one solve; its own coefficients are those of the base.
+struct PlanarModel : PlanarSection {
+  const ArcTableau* table = nullptr;
+  double h = 0;                             ///< cell length, m
+  const PlanarSection* sections = nullptr;  ///< of the cell's stages
 
   PlanarImmersion* immersion = nullptr;  ///< for the laws of a fluid
   const PlanarAround* around = nullptr;  ///< of the cell's stages
   std::size_t first = 0;                 ///< the first of these
   PlanarTendons* tendons = nullptr;      ///< for the laws of tendons
   const PlanarPull* pulls = nullptr;     ///< of the cell's stages
+  const double* sources = nullptr;       ///< as CellModel::sources, lifted × kPlanarWide
 };
 
 struct PlanarStage {

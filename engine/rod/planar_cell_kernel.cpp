@@ -74,6 +74,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
   R theta[S], tau[S][2];
   for (int j = 0; j < S; ++j) {
     const PlanarStage& at = st[j];
+    [[maybe_unused]] const PlanarSection& own = M.sections[j];
     theta[j] = y[0];
     for (int k = 0; k < S; ++k)
       theta[j].r[k] += H.a[j][k];
@@ -81,11 +82,11 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
     if constexpr (law == CellLaw::kExtensibleStatic) {
       // dv_t = C_a (t·dn + d·n dtheta), dv_d = C_s (d·dn - t·n dtheta), dn that of the start
       const double n_t = at.c * at.n[0] + at.s * at.n[1], n_d = at.c * at.n[1] - at.s * at.n[0];
-      by_theta[0] += M.C_v[0] * n_d * at.c + M.C_v[1] * n_t * at.s;
-      by_theta[1] += M.C_v[0] * n_d * at.s - M.C_v[1] * n_t * at.c;
-      const double tt = M.C_v[0] * at.c * at.c + M.C_v[1] * at.s * at.s,
-                   td = (M.C_v[0] - M.C_v[1]) * at.c * at.s,
-                   dd = M.C_v[0] * at.s * at.s + M.C_v[1] * at.c * at.c;
+      by_theta[0] += own.C_v[0] * n_d * at.c + own.C_v[1] * n_t * at.s;
+      by_theta[1] += own.C_v[0] * n_d * at.s - own.C_v[1] * n_t * at.c;
+      const double tt = own.C_v[0] * at.c * at.c + own.C_v[1] * at.s * at.s,
+                   td = (own.C_v[0] - own.C_v[1]) * at.c * at.s,
+                   dd = own.C_v[0] * at.s * at.s + own.C_v[1] * at.c * at.c;
       tau[j][0] = sum(tt, y[3], td, y[4]);
       tau[j][1] = sum(td, y[3], dd, y[4]);
       add(tau[j][0], by_theta[0], theta[j]);
@@ -125,7 +126,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
       n[j][i] = y[3 + i];
       if (inertia)
         for (int k = 0; k < S; ++k)
-          add(n[j][i], H.a[j][k] * M.k, p[k][i]);
+          add(n[j][i], H.a[j][k] * M.sections[k].k, p[k][i]);
       if constexpr (immersed(law))
         for (int k = 0; k < S; ++k)
           add(n[j][i], H.a[j][k], around[k][i]);
@@ -133,7 +134,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
     m_s[j] = sum(at.n[0], tau[j][1], -at.n[1], tau[j][0]);
     add(m_s[j], at.tau[1], n[j][0]);
     add(m_s[j], -at.tau[0], n[j][1]);
-    if (M.k_J != 0) add(m_s[j], M.k_J, theta[j]);
+    if (M.sections[j].k_J != 0) add(m_s[j], M.sections[j].k_J, theta[j]);
     if constexpr (immersed(law)) {
       add(m_s[j], M.around[j].m_theta, theta[j]);
       for (int i = 0; i < 2; ++i)
@@ -143,21 +144,22 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
   R rows[L];
   for (int j = 0; j < S; ++j) {
     const PlanarStage& at = st[j];
+    const PlanarSection& own = M.sections[j];
     R m = y[5];
     for (int k = 0; k < S; ++k)
       add(m, H.a[j][k], m_s[k]);
     for (int c = 0; c < W; ++c)
-      rows[j].r[c] = -M.C_b * m.r[c];
+      rows[j].r[c] = -own.C_b * m.r[c];
     rows[j].r[j] += 1;
     rows[j].r[kAffine] += at.residual_kappa;
     if constexpr (lifts_stretch(law)) {
       const double n_t = at.c * at.n[0] + at.s * at.n[1], n_d = at.c * at.n[1] - at.s * at.n[0];
       R& stretch = rows[S + 2 * j];
       R& shear = rows[S + 2 * j + 1];
-      stretch = sum(-M.C_v[0] * at.c, n[j][0], -M.C_v[0] * at.s, n[j][1]);
-      add(stretch, -M.C_v[0] * n_d, theta[j]);
-      shear = sum(M.C_v[1] * at.s, n[j][0], -M.C_v[1] * at.c, n[j][1]);
-      add(shear, M.C_v[1] * n_t, theta[j]);
+      stretch = sum(-own.C_v[0] * at.c, n[j][0], -own.C_v[0] * at.s, n[j][1]);
+      add(stretch, -own.C_v[0] * n_d, theta[j]);
+      shear = sum(own.C_v[1] * at.s, n[j][0], -own.C_v[1] * at.c, n[j][1]);
+      add(shear, own.C_v[1] * n_t, theta[j]);
       stretch.r[S + 2 * j] += 1;
       shear.r[S + 2 * j + 1] += 1;
       stretch.r[kAffine] += at.residual_v[0];
@@ -166,12 +168,17 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
     if constexpr (has_tendons(law)) {
       const double* by = M.pulls[j].by;
       const int lifted[3] = {j, S + 2 * j, S + 2 * j + 1};
-      const double C[3] = {M.C_b, M.C_v[0], M.C_v[1]};
+      const double C[3] = {own.C_b, own.C_v[0], own.C_v[1]};
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
           rows[lifted[i]].r[lifted[k]] += C[i] * by[3 * i + k];
     }
   }
+  if constexpr (has_tendons(law) && NC == kPlanarWide)
+    if (M.sources)
+      for (int i = 0; i < L; ++i)
+        for (int c = 0; c < NC; ++c)
+          rows[i].r[L + c] += M.sources[i * NC + c];
   if (!eliminate<L, W>(rows)) return false;
   for (int i = 0; i < L; ++i)
     for (int c = 0; c < NC; ++c)
@@ -181,7 +188,7 @@ bool linearize(const PlanarModel& M, const PlanarStage* st, double* Y, double* d
     y[0].r[j] += hb;
     for (int i = 0; i < 2; ++i) {
       add(y[1 + i], hb, tau[j][i]);
-      if (inertia) add(y[3 + i], hb * M.k, p[j][i]);
+      if (inertia) add(y[3 + i], hb * M.sections[j].k, p[j][i]);
       if constexpr (immersed(law)) add(y[3 + i], hb, around[j][i]);
     }
     add(y[5], hb, m_s[j]);

@@ -103,23 +103,24 @@ void PlanarRod::start_columns(const Place& base, double* Y0) const {
 }
 
 // A follower load turns with its section: d(R F) = dtheta e3 × R F.
-void PlanarRod::apply_load_columns(std::size_t node, const PlanarNode& state, double* Y) const {
+void PlanarRod::apply_load_columns(std::size_t node, const PlanarNode& state, double* Y,
+                                   int columns) const {
   for (std::size_t i = 0; i < load_at_.size(); ++i) {
     const PointLoad& load = forcing_.loads[i];
     if (load_at_[i] != node || !load.follower) continue;
     const Vec3 f = offset_ * load.force;
     const double F1 = state.c * f.x() - state.s * f.y(), F2 = state.s * f.x() + state.c * f.y();
-    for (int c = 0; c < columns_; ++c) {
-      Y[3 * columns_ + c] += F2 * Y[c];
-      Y[4 * columns_ + c] -= F1 * Y[c];
+    for (int c = 0; c < columns; ++c) {
+      Y[3 * columns + c] += F2 * Y[c];
+      Y[4 * columns + c] -= F1 * Y[c];
     }
   }
   for (const Disk& disk : disks_) {
     if (disk.node != node) continue;
-    for (int c = 0; c < columns_; ++c) {
-      Y[3 * columns_ + c] += disk.k * Y[columns_ + c];
-      Y[4 * columns_ + c] += disk.k * Y[2 * columns_ + c];
-      Y[5 * columns_ + c] += disk.k_J * Y[c];
+    for (int c = 0; c < columns; ++c) {
+      Y[3 * columns + c] += disk.k * Y[columns + c];
+      Y[4 * columns + c] += disk.k * Y[2 * columns + c];
+      Y[5 * columns + c] += disk.k_J * Y[c];
     }
   }
 }
@@ -147,6 +148,12 @@ void PlanarRod::orthonormalize(std::size_t segment, const PlanarNode& reached, d
     Y.middleCols<3>(3) = d.asDiagonal() * Y_A;
   }
   Y.leftCols<3>() = d.asDiagonal() * Q;
+  for (PulledColumns::Block& block : pulled_.blocks) {
+    Mat6 Y_x = per_unit.asDiagonal() * block.leftCols<PulledColumns::kUsed>();
+    pulled_.G[segment].emplace_back(Q.transpose() * Y_x);
+    Y_x -= Q * pulled_.G[segment].back();
+    block.leftCols<PulledColumns::kUsed>() = d.asDiagonal() * Y_x;
+  }
 }
 
 bool PlanarRod::sweep_columns(const Place& base) {
@@ -160,16 +167,19 @@ bool PlanarRod::sweep_columns(const Place& base) {
   recombinations_.resize(M);
   cell_directions_.resize(static_cast<std::size_t>(cells_) * lifted * width);
   transition_ = 0;
+  if (finds_tensions()) begin_pulled_columns();
   alignas(64) double Y[6 * kPlanarWide];
   start_columns(base, Y);
   for (std::size_t g = 0; g < M; ++g) {
     std::copy_n(Y, 6 * width, &start_columns_[g * 6 * width]);
-    if (g == 0) apply_load_columns(0, starts_.front(), Y);
+    if (finds_tensions()) pulled_.at_segment[g] = pulled_.blocks;
+    if (g == 0) apply_load_columns(0, starts_.front(), Y, columns_);
     for (std::size_t c = segment_first_[g]; c < segment_first_[g + 1]; ++c) {
       enter(c);
       if (!linearize(model_, &stages_[c * S], Y, &cell_directions_[c * lifted * width]))
         return false;
-      apply_load_columns(c + 1, nodes_[c + 1], Y);
+      if (finds_tensions() && !sweep_pulled_columns(c)) return false;
+      apply_load_columns(c + 1, nodes_[c + 1], Y, columns_);
     }
     if (g + 1 < M) orthonormalize(g, nodes_[segment_first_[g + 1]], Y);
   }
@@ -177,19 +187,22 @@ bool PlanarRod::sweep_columns(const Place& base) {
   return true;
 }
 
-bool PlanarRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
+bool PlanarRod::condense(const Port& base, const Port& tip, CondensedRod& out,
+                         TensionPorts* tensions) {
   columns_ = base.moves ? kPlanarWide : kPlanarNarrow;
   const Place base_place = place(base);
   if (!sweep_columns(base_place)) return false;
   const auto last = static_cast<std::size_t>(segments() * 6 * columns_);
-  close_tip(place(tip), &start_columns_[last], out);
-  close_base(base_place, out);
+  const TipRows rows = close_tip(place(tip), &start_columns_[last], out);
+  const Mat3 by_z_of_base = close_base(base_place, out);
+  if (tensions) close_pulled(rows, by_z_of_base, *tensions);
   out.growth = transition_;
   return true;
 }
 
 // The tip's three rows in terms of z and the bodies, and the wrench on the tip's body.
-void PlanarRod::close_tip(const Place& tip, const double* Y0, CondensedRod& out) const {
+PlanarRod::TipRows PlanarRod::close_tip(const Place& tip, const double* Y0,
+                                        CondensedRod& out) const {
   const ConstColumnsMap Y(Y0, 6, columns_);
   const PlanarNode& end = nodes_.back();
   const bool held = tip_ != PlanarHold::kFree;
@@ -201,10 +214,12 @@ void PlanarRod::close_tip(const Place& tip, const double* Y0, CondensedRod& out)
   const Mat6x3 Y_A = columns_ == kPlanarWide ? Mat6x3(Y.middleCols<3>(3)) : Mat6x3(Mat6x3::Zero());
   const Vec6 y = Y.col(affine_column());
   const Vec3 value = end_value(tip_, end, tip, 1) - tip_gap_;
+  TipRows found;
   for (int i = 0; i < 3; ++i) {
     out.T.block<1, 3>(i, 0) = per_unit[i] * Y_z.row(rows[i]);
     out.T_A.block<1, 3>(i, 0) = per_unit[i] * Y_A.row(rows[i]);
     out.t[i] = value[i] + per_unit[i] * y[rows[i]];
+    found.T(i, rows[i]) = per_unit[i];
   }
   auto T_B = out.T_B.topLeftCorner<3, 3>(), WB_B = out.WB_B.topLeftCorner<3, 3>();
   T_B.setZero();
@@ -212,7 +227,7 @@ void PlanarRod::close_tip(const Place& tip, const double* Y0, CondensedRod& out)
   out.WB_z.topLeftCorner<3, 3>().setZero();
   out.WB_A.topLeftCorner<3, 3>().setZero();
   out.wb.head<3>().setZero();
-  if (!held) return;
+  if (!held) return found;
   T_B(0, 0) = tip.arm.y() / scale_.length;
   T_B(1, 0) = -tip.arm.x() / scale_.length;
   T_B(0, 1) = T_B(1, 2) = -1 / scale_.length;
@@ -224,15 +239,18 @@ void PlanarRod::close_tip(const Place& tip, const double* Y0, CondensedRod& out)
   WB_B(0, 1) = end.n[1];
   WB_B(0, 2) = -end.n[0];
   out.wb.head<3>() = -(planar_wrench(end, tip) + W * y);
+  found.W = -W;
+  return found;
 }
 
 // The wrench on the base's body needs z at the first segment: back through the recombinations.
-void PlanarRod::close_base(const Place& base, CondensedRod& out) const {
+/// @return that wrench by z there
+Mat3 PlanarRod::close_base(const Place& base, CondensedRod& out) const {
   auto WA_z = out.WA_z.topLeftCorner<3, 3>(), WA_A = out.WA_A.topLeftCorner<3, 3>();
   WA_z.setZero();
   WA_A.setZero();
   out.wa.head<3>().setZero();
-  if (base_ == PlanarHold::kFree || columns_ != kPlanarWide) return;
+  if (base_ == PlanarHold::kFree || columns_ != kPlanarWide) return Mat3::Zero();
   Mat3 Z = Mat3::Identity(), Z_A = Mat3::Zero();
   Vec3 z0 = Vec3::Zero();
   for (int g = segments() - 2; g >= 0; --g) {
@@ -251,6 +269,7 @@ void PlanarRod::close_base(const Place& base, CondensedRod& out) const {
   WA_A(0, 1) -= start.n[1];
   WA_A(0, 2) += start.n[0];
   out.wa.head<3>() = planar_wrench(start, base) + W * Vec6(Y.col(affine_column())) + W_z * z0;
+  return W_z;
 }
 
 Vec3 PlanarRod::planar_wrench(const PlanarNode& node, const Place& at) const {
@@ -272,16 +291,17 @@ Vec6 PlanarRod::wrench_on_tip(const Port& tip) const {
   return to_world(-planar_wrench(nodes_.back(), place(tip)));
 }
 
-void PlanarRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
+// @param share of the affine part
+void PlanarRod::find_direction(const Vec3& z, const Vec3& zeta_A, double share) {
   const auto M = static_cast<std::size_t>(segments());
   const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto width = static_cast<std::size_t>(columns_);
   start_direction_.resize(M);
   lifted_direction_.resize(static_cast<std::size_t>(cells_) * lifted);
-  Vec3 z_g = z.head<3>();
+  Vec3 z_g = z;
   double weights[kPlanarWide] = {};
   if (columns_ == kPlanarWide) std::copy_n(zeta_A.data(), 3, weights + 3);
-  weights[affine_column()] = 1;
+  weights[affine_column()] = share;
   const auto times_weights = [&](const double* row) {
     double sum = 0;
     for (std::size_t k = 0; k < width; ++k)
@@ -291,7 +311,10 @@ void PlanarRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
   for (std::size_t g = M; g-- > 0;) {
     if (g + 1 < M) {
       const Recombination& rec = recombinations_[g];
-      z_g = solve_upper(rec.R, Vec3(z_g - rec.G_A * zeta_A.head<3>() - rec.g));
+      z_g -= rec.G_A * zeta_A + share * rec.g;
+      for (std::size_t b = 0; b < pulled_.blocks.size(); ++b)
+        z_g -= pulled_.G[g][b] * pulled_.weights_of(b);
+      z_g = solve_upper(rec.R, z_g);
     }
     std::copy_n(z_g.data(), 3, weights);
     for (std::size_t i = 0; i < 6; ++i)
@@ -300,6 +323,7 @@ void PlanarRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
     for (std::size_t i = segment_first_[g] * lifted; i < segment_first_[g + 1] * lifted; ++i)
       lifted_direction_[i] = times_weights(&cell_directions_[i * width]);
   }
+  add_pulled_direction();
 }
 
 void PlanarRod::keep() {

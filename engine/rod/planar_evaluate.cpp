@@ -57,8 +57,8 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
       for (int k = 0; k < S; ++k)
         for (int i = 0; i < 2; ++i)
           n[i] += H.a[j][k] * st[k].b[i];
-      at.v[0] += M.C_v[0] * (at.c * n[0] + at.s * n[1]);
-      at.v[1] += M.C_v[1] * (at.c * n[1] - at.s * n[0]);
+      at.v[0] += M.sections[j].C_v[0] * (at.c * n[0] + at.s * n[1]);
+      at.v[1] += M.sections[j].C_v[1] * (at.c * n[1] - at.s * n[0]);
     }
     at.tau[0] = tau[j][0] = at.c * at.v[0] - at.s * at.v[1];
     at.tau[1] = tau[j][1] = at.s * at.v[0] + at.c * at.v[1];
@@ -70,7 +70,7 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
       for (int k = 0; k < S; ++k)
         p += H.a[j][k] * tau[k][i];
       st[j].p[i] = p;
-      n_s[j][i] = M.k * p + st[j].b[i];
+      n_s[j][i] = M.sections[j].k * p + st[j].b[i];
     }
   if constexpr (immersed(law))
     for (int j = 0; j < S; ++j) {
@@ -86,27 +86,29 @@ void evaluate(const PlanarModel& M, PlanarStage* st, const PlanarNode& start, Pl
         n += H.a[j][k] * n_s[k][i];
       st[j].n[i] = n;
     }
-    m_s[j] = st[j].n[0] * tau[j][1] - st[j].n[1] * tau[j][0] + M.k_J * st[j].theta + st[j].b_J;
+    m_s[j] = st[j].n[0] * tau[j][1] - st[j].n[1] * tau[j][0] + M.sections[j].k_J * st[j].theta +
+             st[j].b_J;
     if constexpr (immersed(law)) m_s[j] += M.around[j].m;
   }
   // (4), (5)
   for (int j = 0; j < S; ++j) {
     PlanarStage& at = st[j];
+    const PlanarSection& own = M.sections[j];
     double m = start.m;
     for (int k = 0; k < S; ++k)
       m += H.a[j][k] * m_s[k];
     at.m = m;
-    at.residual_kappa = at.kappa - at.kappa0 - M.C_b * m;
+    at.residual_kappa = at.kappa - at.kappa0 - own.C_b * m;
     if constexpr (lifts_stretch(law)) {
-      at.residual_v[0] = at.v[0] - at.v0[0] - M.C_v[0] * (at.c * at.n[0] + at.s * at.n[1]);
-      at.residual_v[1] = at.v[1] - at.v0[1] - M.C_v[1] * (at.c * at.n[1] - at.s * at.n[0]);
+      at.residual_v[0] = at.v[0] - at.v0[0] - own.C_v[0] * (at.c * at.n[0] + at.s * at.n[1]);
+      at.residual_v[1] = at.v[1] - at.v0[1] - own.C_v[1] * (at.c * at.n[1] - at.s * at.n[0]);
     }
     if constexpr (has_tendons(law)) {
       M.tendons->evaluate(M.first + static_cast<std::size_t>(j), at);
       const double* pull = M.pulls[j].value;
-      at.residual_kappa += M.C_b * pull[0];
+      at.residual_kappa += own.C_b * pull[0];
       for (int i = 0; i < 2; ++i)
-        at.residual_v[i] += M.C_v[i] * pull[1 + i];
+        at.residual_v[i] += own.C_v[i] * pull[1 + i];
     }
   }
   double c, s;

@@ -38,6 +38,7 @@ RodField PlanarRod::field() const {
   }
   f.base = end_state(starts_.front());
   f.tip = end_state(nodes_.back());
+  f.sections = sections_;
   describe_section(f, section_, options_.shear, options_.extension);
   return f;
 }

@@ -24,14 +24,15 @@ VecX PlanarImmersion::lifted(const VecX& in_plane, double along_normal) const {
 
 // Along the normal nothing moves: x_t = c_v x + x_h = 0 and x_tt = c_w x_t + ... = 0 there.
 void PlanarImmersion::prepare(const SectionProperties& section, const StageRates& rates,
-                              const RodForcing& forcing, const Track& in_plane) {
+                              const RodForcing& forcing, const Track& in_plane,
+                              const std::vector<SectionProperties>& sections) {
   rates_ = rates;
   Track track;
   if (rates.dynamic()) {
     track.x_h = lifted(in_plane.x_h, -rates.c_v * height_);
     track.v_h = lifted(in_plane.v_h, 0);
   }
-  fluid_.prepare(section, {}, rates, forcing, track);
+  fluid_.prepare(section, sections, rates, forcing, track);
 }
 
 Mat3 PlanarImmersion::rotation(const PlanarStage& at) const {

@@ -15,9 +15,10 @@ class PlanarImmersion {
   /// height: of the rod's plane along the normal
   PlanarImmersion(std::size_t count, const Mat3& plane, const Mat3& offset, double height);
 
-  /// Inputs of a solve, from a track whose front holds two coordinates of each place.
+  /// Inputs of a solve, from a track whose front holds two coordinates of each place. @param
+  /// sections of the places, if they vary
   void prepare(const SectionProperties& section, const StageRates& rates, const RodForcing& forcing,
-               const Track& in_plane);
+               const Track& in_plane, const std::vector<SectionProperties>& sections = {});
 
   /// Force and moment at a place and their derivatives.
   void evaluate(std::size_t place, const PlanarStage& at);

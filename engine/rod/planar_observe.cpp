@@ -30,7 +30,12 @@ void PlanarRod::bow(const Port& base, const Port& tip) {
   const double ratio = chord.norm() / forcing_.length;
   if (ratio > 0.999) return;
   const bool turns = base_ != PlanarHold::kFixed && ratio > 1e-6;
-  set_straight(turns ? std::atan2(chord.y(), chord.x()) : std::atan2(at.s, at.c), at.p);
+  const bool bent =
+      std::any_of(own_.begin(), own_.end(), [](const Own& own) { return own.kappa_rest != 0; });
+  set_unloaded(0, Vec2::Zero());
+  const double unloaded = std::atan2(nodes_.back().p[1], nodes_.back().p[0]);
+  set_unloaded(turns ? std::atan2(chord.y(), chord.x()) - unloaded : std::atan2(at.s, at.c), at.p);
+  if (bent) return;  // a bent rod knows where to go
   const double A = std::min(2.2, 2 * std::sqrt(1 - ratio)), k = 2 * std::numbers::pi;
   const int axis = std::abs(offset_(2, 0)) >= std::abs(offset_(2, 1)) ? 0 : 1;
   const double side = std::copysign(A * k / forcing_.length, offset_(2, axis));
@@ -49,7 +54,7 @@ void PlanarRod::set_curve(const RodCurve& curve) {
     return std::pair<double, Vec2>(std::atan2(t.y(), t.x()), p.head<2>());
   };
   const auto [theta, p] = place_at(0);
-  set_straight(theta, p);
+  set_unloaded(theta, p);
   const auto S = static_cast<std::size_t>(table_->stages);
   double last = theta;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
@@ -112,7 +117,13 @@ void PlanarRod::start_tracks() {
 // dp_j = dp_a + h sum a_jk dtau_k, and where v is no unknown it follows from the law.
 void PlanarRod::start_tracks_moving() {
   start_tracks();
-  if (tendons_) tendons_->in_space().start_track_moving(strain_rates(found_direction()));
+  if (tendons_) {
+    std::vector<Vec6> rates;
+    strain_rates(Eigen::Map<const VecX>(lifted_direction_.data(),
+                                        static_cast<Eigen::Index>(lifted_direction_.size())),
+                 rates);
+    tendons_->in_space().start_track_moving(rates);
+  }
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto lifted = static_cast<std::size_t>(kernel_.lifted);
   const auto n = static_cast<Eigen::Index>(stages_.size());
@@ -144,8 +155,8 @@ void PlanarRod::start_tracks_moving() {
       Vec2 dv = Vec2::Zero();
       if (lifts_stretch(law_)) dv = {d[S + 2 * j], d[S + 2 * j + 1]};
       if (law_ == CellLaw::kExtensibleStatic)
-        dv = {model_.C_v[0] * (t.dot(dn) + turn * across.dot(force)),
-              model_.C_v[1] * (across.dot(dn) - turn * t.dot(force))};
+        dv = {coefficients_[c * S + j].C_v[0] * (t.dot(dn) + turn * across.dot(force)),
+              coefficients_[c * S + j].C_v[1] * (across.dot(dn) - turn * t.dot(force))};
       dtau[j] = turn * Vec2(-at.tau[1], at.tau[0]) + dv[0] * t + dv[1] * across;
       const auto i = static_cast<Eigen::Index>(c * S + j);
       if (options_.rotary_inertia) v[angles_ + i] = turn;
@@ -281,6 +292,12 @@ RodSample PlanarRod::observe() const {
     point.velocity =
         plane_.leftCols<2>() * track_.v.segment<2>(2 * (n + static_cast<Eigen::Index>(k)));
     const Vec6 strain = strains(k);
+    const std::size_t next =
+        std::min(k, nodes_.size() - 2) * static_cast<std::size_t>(table_->stages);
+    const double rest = options_.along
+                            ? to_section.col(2).dot(options_.along->rest_curvature(grid_[k]))
+                            : own_[next].kappa_rest;
+    point.rest_curvature = (rest + heat_curvature()) * to_section.col(2);
     point.curvature = strain[0] * to_section.col(2);
     point.shear_stretch = to_section * Vec3(strain[1], strain[2], 0);
   }
@@ -304,10 +321,16 @@ double PlanarRod::magnetic_energy(const MagneticSources& sources) const {
 ThermalEffort PlanarRod::thermal_effort() const {
   ThermalEffort effort;
   const auto S = static_cast<std::size_t>(table_->stages);
-  for (std::size_t j = 0; options_.extension && j < stages_.size(); ++j) {
+  const Vec3 normal = offset_.row(2);
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
     const double w = (grid_[j / S + 1] - grid_[j / S]) * forcing_.length * table_->b[j % S];
-    effort.first[3] -= w * K_v_.x() * (stages_[j].v[0] - 1 - forcing_.heat.stretch);
-    effort.second[3] += w * K_v_.x();
+    const Own& own = own_[j];
+    effort.first.head<3>() -=
+        w * own.K_b * (stages_[j].kappa - own.kappa_rest - heat_curvature()) * normal;
+    effort.second.head<3>() += w * own.K_b * normal.cwiseAbs2();
+    if (!options_.extension) continue;
+    effort.first[3] -= w * own.K_v.x() * (stages_[j].v[0] - 1 - forcing_.heat.stretch);
+    effort.second[3] += w * own.K_v.x();
   }
   return effort;
 }
@@ -316,30 +339,34 @@ RodEnergy PlanarRod::energy() const {
   RodEnergy e;
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto n = static_cast<Eigen::Index>(stages_.size());
-  const double EA = options_.extension ? K_v_.x() : 0, GA = options_.shear ? K_v_.y() : 0;
-  const auto density = [&](const Vec3& strain) {
-    const double stretched = strain[1] - 1 - forcing_.heat.stretch;
-    return 0.5 *
-           (K_b_ * strain[0] * strain[0] + EA * stretched * stretched + GA * strain[2] * strain[2]);
-  };
-  const double weighing = section_.weighing_mass();
-  const Vec2 weight = plane_.leftCols<2>().transpose() * (weighing * forcing_.gravity);
-  const double at_height = height_ * weighing * plane_.col(2).dot(forcing_.gravity);
+  const Vec2 gravity = plane_.leftCols<2>().transpose() * forcing_.gravity;
+  const double at_height = height_ * plane_.col(2).dot(forcing_.gravity);
+  double carried = 0;
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const std::size_t cell = j / S;
     const double w = (grid_[cell + 1] - grid_[cell]) * forcing_.length * table_->b[j % S];
     const PlanarStage& stage = stages_[j];
+    const Own& own = own_[j];
+    const double bent = stage.kappa - own.kappa_rest - heat_curvature(),
+                 stretched = options_.extension ? stage.v[0] - 1 - forcing_.heat.stretch : 0,
+                 sheared = options_.shear ? stage.v[1] : 0;
     const auto i = static_cast<Eigen::Index>(j);
-    e.kinetic += w * 0.5 * section_.rhoA * track_.v.segment<2>(2 * i).squaredNorm();
+    e.kinetic += w * 0.5 * own.rhoA * track_.v.segment<2>(2 * i).squaredNorm();
     if (options_.rotary_inertia)
-      e.kinetic += w * 0.5 * rhoI_ * track_.v[angles_ + i] * track_.v[angles_ + i];
-    e.elastic += w * density({stage.kappa, stage.v[0], stage.v[1]});
-    e.gravity -= w * (weight.dot(Vec2(stage.p[0], stage.p[1])) + at_height);
+      e.kinetic += w * 0.5 * own.rhoI * track_.v[angles_ + i] * track_.v[angles_ + i];
+    e.elastic += w * 0.5 *
+                 (own.K_b * bent * bent + own.K_v.x() * stretched * stretched +
+                  own.K_v.y() * sheared * sheared);
+    e.gravity -= w * own.weighing * (gravity.dot(Vec2(stage.p[0], stage.p[1])) + at_height);
+    const double n_t = stage.c * stage.n[0] + stage.s * stage.n[1],
+                 n_d = stage.c * stage.n[1] - stage.s * stage.n[0];
+    carried += w * (stage.m * stage.kappa + n_t * stage.v[0] + n_d * stage.v[1]);
+    if (tendons_) carried -= w * tendons_->work(j, stage);
     if (!options_.damping) continue;
     const double kappa_t = track_.v[strains_ + i];
-    e.damping_power += w * B_b_ * kappa_t * kappa_t;
+    e.damping_power += w * own.B_b * kappa_t * kappa_t;
     if (extensible_)
-      e.damping_power += w * B_v_.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
+      e.damping_power += w * own.B_v.dot(track_.v.segment<2>(strains_ + n + 2 * i).cwiseAbs2());
   }
   if (around_) {
     std::vector<double> weights;
@@ -348,6 +375,7 @@ RodEnergy PlanarRod::energy() const {
     around_->add_powers(weights, stages_, track_, e);
     e.magnetic = magnetic_energy(forcing_.field);
   }
+  e.set_feed_power(carried, forcing_.length, tendons_ ? &tendons_->in_space() : nullptr);
   for (std::size_t d = 0; d < disks_.size(); ++d) {
     const Disk& disk = disks_[d];
     const PlanarNode& node = nodes_[disk.node];
@@ -358,13 +386,6 @@ RodEnergy PlanarRod::energy() const {
       e.kinetic +=
           0.5 * disk.inertia * std::pow(track_.v[disk_angles_ + static_cast<Eigen::Index>(d)], 2);
   }
-  // energy that enters per unit feed, see ShootingRod::energy
-  const PlanarNode& base = nodes_.front();
-  const Vec3 strain = strains_at_nodes()(0).head<3>();
-  const double n_t = base.c * base.n[0] + base.s * base.n[1],
-               n_d = base.c * base.n[1] - base.s * base.n[0];
-  e.feed_power = density(strain) - n_t * strain[1] - n_d * strain[2] - base.m * strain[0] -
-                 weight.dot(Vec2(base.p[0], base.p[1])) - at_height;
   return e;
 }
 

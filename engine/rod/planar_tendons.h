@@ -18,6 +18,12 @@ class PlanarTendons {
   /// The pull at a stage and its derivatives.
   void evaluate(std::size_t stage, const PlanarStage& at);
 
+  /// Of the pull at a stage on its strains, J/m.
+  double work(std::size_t stage, const PlanarStage& at) const {
+    const double* pull = pulls_[stage].value;
+    return pull[0] * at.kappa + pull[1] * at.v[0] + pull[2] * at.v[1];
+  }
+
   const PlanarPull* at(std::size_t stage) const { return &pulls_[stage]; }
 
   /// (u, v) in section axes by (kappa, v_t, v_d).

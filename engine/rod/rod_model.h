@@ -115,13 +115,26 @@ struct RodResidual {
   bool finite = true;
 };
 
+class RodTendons;
+struct TendonSection;
+
 struct RodEnergy {
   double kinetic = 0, elastic = 0, gravity = 0, magnetic = 0;
   double damping_power = 0;  ///< W, taken out by Kelvin-Voigt damping, drag and friction
   double fluid_power = 0;    ///< W, brought in by a fluid's current and its inertia
-  double feed_power =
-      0;  ///< W, brought in per unit feed rate of the length drive (N): see shooting.cpp
+  double feed_power = 0;     ///< W, brought in per unit feed rate of the length drive (N)
+
+  /// A rod that grows while its sections stay where they are becomes shorter in its strains: with e
+  /// its energy per length and Lambda its own wrench, a unit of feed brings in
+  ///   ∫ (e - Lambda·(u; v)) ds / L,    less what its tendons' motors pay out                  (4)
+  /// and where nothing but its ends and its weight acts, that is what enters through its base.
+  /// @param carried ∫ Lambda·(u; v) ds; kinetic, elastic, gravity and magnetic are the rod's alone
+  void set_feed_power(double carried, double length, const RodTendons* tendons);
 };
+
+/// Lambda·(u; v) of (4). @param m, n of rod and tendons, world axes @param tendons null: none
+double own_work(const Mat3& R, const Vec3& m, const Vec3& n, const Vec3& u, const Vec3& v,
+                const TendonSection* tendons);
 
 /// How finely a rod is cut, in the words of its method.
 struct RodResolution {

@@ -21,15 +21,12 @@ V3 plain(const Vec3& x) {
 RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
                        const std::vector<AskedSection>& sections, double EI,
                        const std::vector<double>& stations)
-    : tendons_(std::move(tendons)), length_(length), tensions_(tendons_.size(), 0.0) {
+    : tendons_(std::move(tendons)), EI_(EI), asked_(sections), tensions_(tendons_.size(), 0.0) {
   const std::size_t n = tendons_.size();
   stretch_.assign(n * sections.size(), 0);
   directions_.assign(3 * n * sections.size(), 0);
-  for (const AskedSection& section : sections) {
-    weights_.push_back(section.weight * length);
-    for (const Tendon& tendon : tendons_)
-      places_.push_back(tendon.at(section.s, section.inside, length));
-  }
+  weights_.resize(sections.size());
+  places_.resize(n * sections.size());
   for (std::size_t i = 0; i < sections.size(); ++i) {
     TendonSection section;
     section.count = static_cast<int>(n);
@@ -39,31 +36,55 @@ RodTendons::RodTendons(std::vector<Tendon> tendons, double length,
     section.directions = directions_.data() + 3 * n * i;
     sections_.push_back(section);
   }
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    evaluate(i, sections[i].rest, Vec3::UnitZ());
-  unloaded_ = lengths();
-  // of the size of what a newton displaces
-  for (std::size_t k = 0; k < n; ++k) {
-    double squared = 1e-6 * length * length;
-    for (std::size_t i = 0; i < sections.size(); ++i)
-      squared = std::max(squared, Eigen::Map<const Vec3>(places_[n * i + k].r).squaredNorm());
-    slackness_.push_back(length * squared / EI);
-    units_.push_back(EI / (length * std::sqrt(squared)));
-  }
-  x_.assign(n, 0);
-  prescribed_ = unloaded_;
+  for (std::vector<double>* of : {&unloaded_, &reach_, &slackness_, &units_, &x_})
+    of->assign(n, 0);
+  unloaded_stretch_.resize(n * sections.size());
+  paid_out_.resize(n * sections.size());
   for (std::size_t k = 0; k < n; ++k) {
     if (tendons_[k].friction() == 0) continue;
-    frictions_.push_back({k, TendonFriction(tendons_[k].friction(), tendons_[k].end(), k, length,
-                                            sections, stations)});
+    frictions_.push_back(
+        {k, TendonFriction(tendons_[k].friction(), tendons_[k].end(), k, sections, stations)});
     friction_unknowns_ += frictions_.back().law.unknowns();
   }
+  lie_along(length);
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    evaluate(i, sections[i].rest, Vec3::UnitZ());
+  prescribed_ = unloaded_;
   track_.resize(static_cast<Eigen::Index>(n));
   if (frictions_.empty()) return;
   curvatures_.assign(sections.size(), Vec3::Zero());
   spread_.assign(n * sections.size(), 0);
   for (std::size_t i = 0; i < sections.size(); ++i)
     sections_[i].tensions = spread_.data() + n * i;
+}
+
+// Everything that depends on the rod's length and on nothing else. Of the unloaded rod g = a + b /
+// L with a = v_rest + u_rest × r and b = dr / d(s / L): L |g| grows with L by t·a.
+void RodTendons::lie_along(double length) {
+  length_ = length;
+  const std::size_t n = tendons_.size();
+  std::fill(unloaded_.begin(), unloaded_.end(), 0.0);
+  std::fill(reach_.begin(), reach_.end(), 1e-6 * length * length);
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    weights_[i] = asked_[i].weight * length;
+    for (std::size_t k = 0; k < n; ++k) {
+      TendonPlace& place = places_[n * i + k];
+      place = tendons_[k].at(asked_[i].s, asked_[i].inside, length);
+      const Vec3 r = Eigen::Map<const Vec3>(place.r), a = Vec3::UnitZ() + asked_[i].rest.cross(r),
+                 g = a + Eigen::Map<const Vec3>(place.r_s);
+      reach_[k] = std::max(reach_[k], r.squaredNorm());
+      unloaded_stretch_[n * i + k] = place.there ? g.norm() : 0;
+      paid_out_[n * i + k] = place.there ? asked_[i].weight * g.normalized().dot(a) : 0;
+      unloaded_[k] += weights_[i] * unloaded_stretch_[n * i + k];
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    // of the size of what a newton displaces
+    slackness_[k] = length * reach_[k] / EI_;
+    units_[k] = EI_ / (length * std::sqrt(reach_[k]));
+  }
+  for (Friction& friction : frictions_)
+    friction.law.lie_along(length, unloaded_stretch_.data() + friction.tendon, n);
 }
 
 const TendonFriction* RodTendons::friction_of(std::size_t tendon) const {
@@ -93,8 +114,9 @@ void RodTendons::accept() {
     friction.law.accept();
 }
 
-void RodTendons::set(const std::vector<TendonPull>& pulls) {
+void RodTendons::set(const std::vector<TendonPull>& pulls, double length) {
   assert(pulls.size() == tensions_.size());
+  if (length != length_) lie_along(length);
   unknown_.clear();
   for (std::size_t i = 0; i < pulls.size(); ++i) {
     if (pulls[i].displaces) {
@@ -135,24 +157,22 @@ void RodTendons::set_values(const VecX& x) {
 
 // (1)
 const VecX& RodTendons::gaps() {
-  const std::vector<double> now = lengths();
   gaps_.resize(unknowns());
   Eigen::Index k = 0;
   for (const std::size_t i : unknown_)
-    gaps_[k++] = (now[i] - prescribed_[i] - slackness_[i] * std::min(x_[i], 0.0)) / length_;
+    gaps_[k++] = (length_of(i) - prescribed_[i] - slackness_[i] * std::min(x_[i], 0.0)) / length_;
   for (Friction& friction : frictions_) {
-    gaps_.segment(k, friction.law.unknowns()) = friction.law.gaps(sections_, curvatures_);
+    friction.law.gaps(sections_, curvatures_, gaps_.segment(k, friction.law.unknowns()));
     k += friction.law.unknowns();
   }
   return gaps_;
 }
 
-VecX RodTendons::gaps_by_own() const {
-  VecX by = VecX::Constant(unknowns(), -1);
-  Eigen::Index k = 0;
-  for (const std::size_t i : unknown_)
-    by[k++] = x_[i] < 0 ? -slackness_[i] / length_ : 0;
-  return by;
+double RodTendons::gap_by_own(Eigen::Index unknown) const {
+  const auto k = static_cast<std::size_t>(unknown);
+  if (k >= unknown_.size()) return -1;
+  const std::size_t i = unknown_[k];
+  return x_[i] < 0 ? -slackness_[i] / length_ : 0;
 }
 
 // |g| by (u, v): (r × t, t)
@@ -163,18 +183,26 @@ Vec6 RodTendons::stretch_by_strain(const TendonSection& section, std::size_t ten
   return by;
 }
 
-VecX RodTendons::gap_rates(const std::vector<Vec6>& strain_rates) const {
-  VecX rates = VecX::Zero(unknowns());
+void RodTendons::gap_rates(const std::vector<Vec6>& strain_rates, Eigen::Ref<VecX> rates) const {
+  rates.setZero();
   for (std::size_t i = 0; i < sections_.size(); ++i)
     for (std::size_t k = 0; k < unknown_.size(); ++k)
       rates[static_cast<Eigen::Index>(k)] +=
           weights_[i] / length_ * stretch_by_strain(sections_[i], unknown_[k]).dot(strain_rates[i]);
   auto k = static_cast<Eigen::Index>(unknown_.size());
   for (const Friction& friction : frictions_) {
-    rates.segment(k, friction.law.unknowns()) = friction.law.rates(sections_, strain_rates);
+    friction.law.rates(sections_, strain_rates, rates.segment(k, friction.law.unknowns()));
     k += friction.law.unknowns();
   }
-  return rates;
+}
+
+double RodTendons::feed_power() const {
+  double power = 0;
+  const std::size_t n = tendons_.size();
+  for (std::size_t i = 0; i < sections_.size(); ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      power += sections_[i].tensions[k] * paid_out_[n * i + k];
+  return power;
 }
 
 Vec6 RodTendons::per_unknown(Eigen::Index unknown, std::size_t section) const {
@@ -208,21 +236,19 @@ void RodTendons::evaluate(std::size_t section, const Vec3& u, const Vec3& v) {
   evaluate_tendons(sections_[section], plain(u), plain(v));
 }
 
-std::vector<double> RodTendons::lengths() const {
-  std::vector<double> sum(tendons_.size(), 0.0);
+double RodTendons::length_of(std::size_t tendon) const {
+  double sum = 0;
   for (std::size_t i = 0; i < sections_.size(); ++i)
-    for (std::size_t k = 0; k < sum.size(); ++k)
-      sum[k] += weights_[i] * sections_[i].stretch[k];
+    sum += weights_[i] * sections_[i].stretch[tendon];
   return sum;
 }
 
 std::vector<TendonSample> RodTendons::observe() const {
-  const std::vector<double> now = lengths();
   std::vector<TendonSample> samples;
-  for (std::size_t k = 0; k < now.size(); ++k) {
+  for (std::size_t k = 0; k < tendons_.size(); ++k) {
     TendonSample& sample = samples.emplace_back();
     sample.tension = sample.end_tension = tensions_[k];
-    sample.displacement = unloaded_[k] - now[k];
+    sample.displacement = unloaded_[k] - length_of(k);
     sample.rate = track_.v[static_cast<Eigen::Index>(k)];
     const TendonFriction* friction = friction_of(k);
     if (!friction) continue;
@@ -235,9 +261,8 @@ std::vector<TendonSample> RodTendons::observe() const {
 }
 
 void RodTendons::fill_track() {
-  const std::vector<double> now = lengths();
-  for (std::size_t k = 0; k < now.size(); ++k)
-    track_.x[static_cast<Eigen::Index>(k)] = unloaded_[k] - now[k];
+  for (std::size_t k = 0; k < tendons_.size(); ++k)
+    track_.x[static_cast<Eigen::Index>(k)] = unloaded_[k] - length_of(k);
 }
 
 void RodTendons::start_track() {

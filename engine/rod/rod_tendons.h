@@ -25,6 +25,9 @@ struct AskedSection {
 /// tendon is taut, and with x < 0 it hangs slack by c |x|, so that one row says both,
 ///   gap = (length - prescribed length - c min(x, 0)) / L = 0,   tension = max(x, 0)            (1)
 /// Behind them stand the unknowns of friction (engine/rod/tendon_friction.h), with their own rows.
+/// A rod that is fed keeps its tendons at the same fractions of its length: as it grows they run
+/// straighter, and what their motors have pulled in is counted from the unloaded rod of the length
+/// that it now has.
 class RodTendons {
  public:
   /// @param EI that makes c a compliance @param stations where strains may jump, s
@@ -34,7 +37,7 @@ class RodTendons {
   RodTendons(const RodTendons&) = delete;
   RodTendons& operator=(const RodTendons&) = delete;
 
-  void set(const std::vector<TendonPull>& pulls);
+  void set(const std::vector<TendonPull>& pulls, double length);
 
   /// The law at section i, as asked; what is found there stays until the next time.
   TendonSection& at(std::size_t i) { return sections_[i]; }
@@ -95,11 +98,16 @@ class RodTendons {
   /// By the last gaps().
   const VecX& gaps_found() const { return gaps_; }
 
-  VecX gaps_by_own() const;  ///< by its own x, where it hangs slack; by friction's own
+  /// By its own x, where it hangs slack; by friction's own.
+  double gap_by_own(Eigen::Index unknown) const;
   /// Rates of (1) at rates of (u, v), one of every section.
-  VecX gap_rates(const std::vector<Vec6>& strain_rates) const;
+  void gap_rates(const std::vector<Vec6>& strain_rates, Eigen::Ref<VecX> rates) const;
   /// (Lambda_m, Lambda_n) at a section per unit of an unknown; 0 where it hangs slack.
   Vec6 per_unknown(Eigen::Index unknown, std::size_t section) const;
+
+  /// W for each m/s of feed that it takes to bring in as much taut tendon as the unloaded rod grows
+  /// by.
+  double feed_power() const;
 
   /// The stretch of tendons whose length is held, by (u, v): 6 × number of taut unknown ones.
   MatX locked_at(std::size_t section) const { return locked(sections_[section]); }
@@ -113,23 +121,29 @@ class RodTendons {
   const TendonFriction* friction_of(std::size_t tendon) const;
   void spread_tensions();
 
-  /// Of a tendon's way at a section, up to a constant.
+  /// Of a tendon's way at a section, against the unloaded rod.
   double shortening(std::size_t section, std::size_t tendon) const {
-    return -weights_[section] * sections_[section].stretch[tendon];
+    return weights_[section] * (unloaded_stretch_[section * tendons_.size() + tendon] -
+                                sections_[section].stretch[tendon]);
   }
 
-  std::vector<double> lengths() const;
+  void lie_along(double length);
+  double length_of(std::size_t tendon) const;
   MatX locked(const TendonSection& section) const;
   Vec6 stretch_by_strain(const TendonSection& section, std::size_t tendon) const;
 
   std::vector<Tendon> tendons_;
-  double length_ = 0;
+  double length_ = 0, EI_ = 0;
+  std::vector<AskedSection> asked_;
   std::vector<double> weights_;      ///< m, of the sections
   std::vector<double> tensions_;     ///< N, at the motor
   std::vector<TendonPlace> places_;  ///< sections × tendons
   std::vector<double> stretch_, directions_;
   std::vector<TendonSection> sections_;
-  std::vector<double> unloaded_;        ///< lengths along the unloaded rod, by the same quadrature
+  std::vector<double> unloaded_;  ///< lengths along the unloaded rod, by the same quadrature
+  std::vector<double> unloaded_stretch_,
+      paid_out_;                        ///< of |g| there; of lengths by the rod's length
+  std::vector<double> reach_;           ///< largest r² along it, m²
   std::vector<double> slackness_;       ///< c of (1), m/N
   std::vector<double> units_;           ///< EI / (L r), N
   std::vector<std::size_t> unknown_;    ///< tendons with unknown tension

@@ -26,7 +26,7 @@ struct TendonSample {
   double end_tension = 0;                ///< N, where it is fastened
   double rate = 0;                       ///< of the displacement, m/s
   /// With friction, of every section that it passes: its tension over that at the motor, and by how
-  /// much its way there has become shorter (m).
+  /// much its way there is shorter than along the unloaded rod (m).
   std::vector<Vec2> along = {};
 };
 

@@ -163,7 +163,7 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   if (fluid_.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
   if (tendons_) {
     law_ = fluid_.acts() ? CellLaw::kTendonsFluid : CellLaw::kTendons;
-    tendons_->set(forcing.tendons);
+    tendons_->set(forcing.tendons, forcing.length);
   }
   kernel_ = &cell_kernel(table_->stages, law_);
 

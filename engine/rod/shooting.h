@@ -151,7 +151,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   void choose_segments();
   void apply_load(std::size_t node, NodeState& state) const;
-  void apply_load_columns(std::size_t node, const NodeState& state, double* Y) const;
+  void apply_load_columns(std::size_t node, const NodeState& state, double* Y, int columns) const;
   void start_columns(const Port& base, double* Y) const;
   bool sweep_columns(const Port& base);
   void cut_zones();
@@ -170,13 +170,22 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
 
   Eigen::Index freedoms() const override { return 6; }
 
-  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
-  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
-  void find_direction(const Vec6& z, const Vec6& zeta_A);
-  VecX found_direction() const;
-  void take_direction(const VecX& direction);
-  void add_tension(Eigen::Index unknown, bool add) override;
-  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out,
+                       TensionPorts& ports) override {
+    return condense(base, tip, out, &ports);
+  }
+
+  bool condense(const Port& base, const Port& tip, CondensedRod& out, TensionPorts* tensions);
+  OpenPorts* ports_of_forces() override;
+  VecX open_forces() const;
+  void find_directions(const MatX& cases, MatX& directions) override;
+  void find_direction_in_case(const Eigen::Ref<const VecX>& column);
+  void find_direction(const Vec6& z, const Vec6& zeta_A, double share);
+  void find_tension_sources();
+  void note_turning();
+  const double* tension_sources(std::size_t cell, std::size_t block) const;
+  void strain_rates(const Eigen::Ref<const VecX>& direction,
+                    std::vector<Vec6>& rates) const override;
 
   // contact
   const NodeState& cell_state(std::size_t cell) const;
@@ -207,11 +216,12 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   void add_force_columns(const RodContact& contact, int end, const NodeState& state, int column,
                          double* Y) const;
 
-  // contacts whose forces are unknowns of the robot: engine/rod/shooting_open_contact.cpp
+  // what others determine, forces of contacts and unknowns of tendons:
+  // engine/rod/shooting_open_contact.cpp
   struct Open;
   struct ContactElimination;
 
-  std::size_t open_count() const;
+  bool is_open() const;
   void begin_open_columns();
   void keep_open_columns(std::size_t zone);
   void record_open_motion(std::size_t open, int end, std::size_t zone, const double* Y);
@@ -223,7 +233,7 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
                          const ContactElimination& how, std::size_t zone);
   void orthogonalize_open_columns(std::size_t zone, const Vec3& turn, const Vec12& units,
                                   const Eigen::Matrix<double, 12, 6>& Q);
-  void close_open_ports(const Port& base, const Port& tip);
+  void close_open_ports(const Port& base, const Port& tip, TensionPorts* tensions);
   void step_back_open(std::size_t zone, Vec6& z) const;
   void meet_back_open(std::size_t zone, Vec6& z, Vec3& force) const;
   void add_open_directions();
@@ -344,7 +354,6 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
     ContactMotion motion;
     Columns opened;  ///< columns at the start of a cell with a contact
     std::vector<Vec3> kept, direction;
-    std::unique_ptr<Open> open;  ///< only while contacts are shared
 
     void visit(Archive& archive) {
       cprsim::visit(contacts, archive);
@@ -357,8 +366,9 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   std::unique_ptr<RodTendons> tendons_;  ///< sections: stages
   TendonBorder border_;
   VecX tension_direction_;
-  std::unique_ptr<RodDisks> disks_;     ///< null: none
-  std::vector<CellStage> kept_stages_;  ///< while residuals are those of add_tension()
+  std::vector<Mat3> turning_;        ///< J_r(Omega) and its derivative along w, of each stage
+  std::unique_ptr<RodDisks> disks_;  ///< null: none
+  std::unique_ptr<Open> open_;  ///< of a rod that touches something or whose tendons ask for it
 
   bool finds_tensions() const { return tendons_ && tendons_->unknowns() > 0; }
 };

@@ -151,9 +151,9 @@ void ShootingRod::open_contact_columns(std::size_t cell, double* Y) {
   const RodContact& contact = *contact_in(cell);
   touch_->opened.assign(Y, Y + 12 * kWide);
   add_force_columns(contact, 0, cell_state(cell), kContactColumn, Y);
-  if (open_count() == 0) return;
-  touch_->open->opened = touch_->open->blocks;
-  for (Open::Block& block : touch_->open->blocks)
+  if (!is_open()) return;
+  open_->opened = open_->blocks;
+  for (Open::Block& block : open_->blocks)
     add_force_columns(contact, 0, cell_state(cell), -1, block.data());
 }
 
@@ -197,7 +197,7 @@ bool ShootingRod::meet_contact(std::size_t index, std::size_t zone, double* Y0) 
   rec.f = unit * held.block<3, 1>(6, 6);
   const TallQr::Mat12x6 Y_z = Y.leftCols<6>();
   const Eigen::Matrix<double, 12, 3> Y_f = Y.middleCols<3>(kContactColumn);
-  if (open_count() > 0) meet_open_columns(contact, rows, {lower, qr.Q1, Y_z, Y_f}, zone);
+  if (is_open()) meet_open_columns(contact, rows, {lower, qr.Q1, Y_z, Y_f}, zone);
   Y.leftCols<6>() = Y_z * rec.N + Y_f * (rec.F / unit);
   Y.middleCols<6>(6) += Y_z * rec.P_A + Y_f * (rec.F_A / unit);
   Y.col(kAffine) += Y_z * rec.p + Y_f * (rec.f / unit);

@@ -70,16 +70,17 @@ void ShootingRod::start_columns(const Port& base, double* Y0) const {
 }
 
 // A follower load turns with its section: d(R F) = phi × R F.
-void ShootingRod::apply_load_columns(std::size_t node, const NodeState& state, double* Y0) const {
+void ShootingRod::apply_load_columns(std::size_t node, const NodeState& state, double* Y0,
+                                     int columns) const {
   for (std::size_t i = 0; i < load_at_.size(); ++i) {
     const PointLoad& load = forcing_.loads[i];
     if (load_at_[i] != node || !load.follower) continue;
     const Mat3 R = rotation_of(state);
-    ColumnsMap Y(Y0, 12, columns_);
+    ColumnsMap Y(Y0, 12, columns);
     Y.middleRows<3>(6) += hat(R * load.force) * Y.topRows<3>();
     Y.middleRows<3>(9) += hat(R * load.torque) * Y.topRows<3>();
   }
-  if (disks_) disks_->pass_columns(node, ColumnsMap(Y0, 12, columns_));
+  if (disks_) disks_->pass_columns(node, ColumnsMap(Y0, 12, columns));
 }
 
 // At a boundary: y = Y [z; zeta_A; 1] + mismatch. With D^-1 Y_z = Q R the new unknowns are z' = R z
@@ -114,7 +115,7 @@ void ShootingRod::orthonormalize(std::size_t zone, const Vec12& mismatch, double
     Y.middleCols<6>(6) = d.asDiagonal() * Y_A;
   }
   Y.leftCols<6>() = d.asDiagonal() * qr.Q1;
-  if (open_count() > 0) orthogonalize_open_columns(zone, mismatch.head<3>(), d, qr.Q1);
+  if (is_open()) orthogonalize_open_columns(zone, mismatch.head<3>(), d, qr.Q1);
 }
 
 void ShootingRod::cut_zones() {
@@ -156,14 +157,14 @@ bool ShootingRod::sweep_columns(const Port& base) {
   recombinations_.resize(zones);
   cell_directions_.resize(static_cast<std::size_t>(cells_) * lifted * width);
   transition_ = 0;
-  if (touch_) begin_open_columns();
-  const bool open = open_count() > 0;
+  if (touch_ || finds_tensions()) begin_open_columns();
+  const bool open = is_open();
   alignas(64) double Y[12 * kWide];
   start_columns(base, Y);
   for (std::size_t g = 0; g < zones; ++g) {
     zone_start_columns_[g].assign(Y, Y + 12 * width);
     if (open) keep_open_columns(g);
-    if (g == 0) apply_load_columns(0, starts_.front(), Y);
+    if (g == 0) apply_load_columns(0, starts_.front(), Y, columns_);
     if (g == 0 && open) close_open_forces(0, 0, Y);
     for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
       enter_cell(c);
@@ -173,7 +174,7 @@ bool ShootingRod::sweep_columns(const Port& base) {
                      &cell_directions_[c * lifted * width]))
         return false;
       if (open && !sweep_open_columns(c)) return false;
-      apply_load_columns(c + 1, nodes_[c + 1], Y);
+      apply_load_columns(c + 1, nodes_[c + 1], Y, columns_);
       if (open) close_open_forces(c + 1, g, Y);
     }
     if (g + 1 < zones && !cross_boundary(g, Y)) return false;
@@ -185,15 +186,16 @@ bool ShootingRod::sweep_columns(const Port& base) {
 
 bool ShootingRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
   return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
-                          : linearize_given(base, tip, out);
+                          : condense(base, tip, out, nullptr);
 }
 
-bool ShootingRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
+bool ShootingRod::condense(const Port& base, const Port& tip, CondensedRod& out,
+                           TensionPorts* tensions) {
   columns_ = base.moves || contact_count() > 0 ? kWide : kNarrow;
   if (!sweep_columns(base)) return false;
   close_tip(tip, zone_start_columns_.back().data(), out);
   close_base(base, out);
-  if (open_count() > 0) close_open_ports(base, tip);
+  if (is_open()) close_open_ports(base, tip, tensions);
   out.growth = transition_;
   return true;
 }
@@ -294,33 +296,36 @@ Vec6 ShootingRod::wrench_on_tip(const Port& tip) const {
 }
 
 void ShootingRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
-  if (finds_tensions())
-    take_direction(border_.direction(z, zeta_A));
-  else
-    find_direction(z, zeta_A);
+  if (finds_tensions()) {
+    find_direction_in_case(border_.complete(z, zeta_A, open_forces()).col(0));
+    tension_direction_ = border_.tensions(*tendons_);
+  } else {
+    find_direction(z, zeta_A, 1);
+  }
 }
 
-void ShootingRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
+// @param share of the affine part
+void ShootingRod::find_direction(const Vec6& z, const Vec6& zeta_A, double share) {
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto width = static_cast<std::size_t>(columns_);
   const int affine = affine_column(columns_);
   start_direction_.resize(starts_.size());
   lifted_direction_.resize(static_cast<std::size_t>(cells_) * lifted);
-  const bool open = open_count() > 0;
+  const bool open = is_open();
   if (touch_) touch_->direction.resize(contact_count());
   Vec6 z_g = z;
-  VecX weights = VecX::Zero(columns_);
+  Eigen::Matrix<double, kWide, 1> weights = Eigen::Matrix<double, kWide, 1>::Zero();
   if (columns_ == kWide) weights.segment<6>(6) = zeta_A;
-  weights[affine] = 1;
+  weights[affine] = share;
   for (std::size_t g = boundaries_.size() + 1; g-- > 0;) {
     if (g < boundaries_.size()) {
       const Recombination& rec = recombinations_[g];
-      z_g -= rec.G_A * zeta_A + rec.g;
+      z_g -= rec.G_A * zeta_A + share * rec.g;
       if (open) step_back_open(g, z_g);
       rec.R.triangularView<Eigen::Upper>().solveInPlace(z_g);
       if (boundaries_[g].contact >= 0) {
-        Vec3 df = rec.F * z_g + rec.F_A * zeta_A + rec.f;
-        Vec6 z_met = rec.N * z_g + rec.P_A * zeta_A + rec.p;
+        Vec3 df = rec.F * z_g + rec.F_A * zeta_A + share * rec.f;
+        Vec6 z_met = rec.N * z_g + rec.P_A * zeta_A + share * rec.p;
         if (open) meet_back_open(g, z_met, df);
         touch_->direction[static_cast<std::size_t>(boundaries_[g].contact)] = df;
         weights.segment<3>(kContactColumn) = df / port_scale_.force;
@@ -331,7 +336,8 @@ void ShootingRod::find_direction(const Vec6& z, const Vec6& zeta_A) {
     const int segment = g == 0 ? 0 : boundaries_[g - 1].segment;
     if (segment >= 0)
       start_direction_[static_cast<std::size_t>(segment)] =
-          ConstColumnsMap(zone_start_columns_[g].data(), 12, columns_) * weights;
+          ConstColumnsMap(zone_start_columns_[g].data(), 12, columns_)
+              .lazyProduct(weights.head(columns_));
     for (std::size_t c = zone_first(g); c < zone_end(g); ++c) {
       const double* D = &cell_directions_[c * lifted * width];
       for (std::size_t i = 0; i < lifted; ++i) {

@@ -137,7 +137,14 @@ void ShootingRod::start_tracks() {
 // cell's start.
 void ShootingRod::start_tracks_moving() {
   start_tracks();
-  if (tendons_) tendons_->start_track_moving(strain_rates(found_direction()));
+  if (tendons_) {
+    std::vector<Vec6> rates;
+    note_turning();
+    strain_rates(Eigen::Map<const VecX>(lifted_direction_.data(),
+                                        static_cast<Eigen::Index>(lifted_direction_.size())),
+                 rates);
+    tendons_->start_track_moving(rates);
+  }
   const auto S = static_cast<std::size_t>(table_->stages);
   const auto lifted = static_cast<std::size_t>(kernel_->lifted);
   const auto n = static_cast<Eigen::Index>(stages_.size());
@@ -352,6 +359,7 @@ RodEnergy ShootingRod::energy() const {
     return K_se;
   };
   const Vec3 z(0, 0, 1 + forcing_.heat.stretch);
+  double carried = 0;
   for (std::size_t j = 0; j < stages_.size(); ++j) {
     const double weight = weight_of(j);
     const CellStage& stage = stages_[j];
@@ -366,6 +374,8 @@ RodEnergy ShootingRod::energy() const {
     e.elastic += weight * 0.5 *
                  (bent.dot(own.K_bt.cwiseProduct(bent)) + stretch.dot(K_se.cwiseProduct(stretch)));
     e.gravity -= weight * own.weighing_mass() * forcing_.gravity.dot(vec(stage.p));
+    carried += weight * own_work(Eigen::Map<const RowMatrix>(stage.R), vec(stage.m), vec(stage.n),
+                                 vec(stage.u), vec(stage.v), tendons_ ? &tendons_->at(j) : nullptr);
     if (options_.drag || options_.line_loads)
       fluid_.add_power(j, Eigen::Map<const RowMatrix>(stage.R).col(2), weight, track_, e);
     if (!options_.damping) continue;
@@ -376,21 +386,10 @@ RodEnergy ShootingRod::energy() const {
     e.damping_power += weight * v_t.dot(own.B_se.cwiseProduct(v_t));
   }
   e.magnetic = magnetic_energy(forcing_.field);
+  e.set_feed_power(carried, forcing_.length, tendons_.get());
   if (disks_) disks_->add_energy(track_, e);
   if (touch_ && touch_->motion.friction() && rates_.dynamic())
     e.damping_power += friction_power(touch_->contacts, touch_->rows);
-  // Energy that enters per unit feed: the base section's traction works on the inflow, which brings
-  // strain energy and weight along.
-  const NodeState& base = nodes_.front();
-  const Vec6 strain = strains_at_nodes()(0);
-  const Vec3 u = strain.head<3>(), v = strain.tail<3>();
-  const Vec3 n_S = rotation_of(base).transpose() * force_of(base),
-             m_S = rotation_of(base).transpose() * moment_of(base);
-  const Vec3 bent = u - section_.u_rest - forcing_.heat.curvature;
-  const double density = 0.5 * (bent.dot(section_.K_bt.cwiseProduct(bent)) +
-                                (v - z).dot(free_stiffness(section_).cwiseProduct(v - z)));
-  e.feed_power = density - n_S.dot(v) - m_S.dot(u) -
-                 section_.weighing_mass() * forcing_.gravity.dot(position_of(base));
   return e;
 }
 

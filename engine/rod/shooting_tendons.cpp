@@ -4,7 +4,7 @@
 
 #include "engine/math/so3.h"
 #include "engine/rod/arc_grid.h"
-#include "engine/rod/shooting.h"
+#include "engine/rod/shooting_open.h"
 
 namespace cprsim {
 namespace {
@@ -34,72 +34,87 @@ const VecX& ShootingRod::tendon_gaps() {
   return tendons_->gaps();
 }
 
-// Starts of segments, lifted unknowns, contact forces.
-VecX ShootingRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
-  find_direction(z, zeta_A);
-  return found_direction();
+/// Of shared contacts and echoes, as last set.
+VecX ShootingRod::open_forces() const {
+  const auto count = 3 * static_cast<Eigen::Index>(open_->contacts.size());
+  return port_scale_.force * open_->weights.head(count);
 }
 
-VecX ShootingRod::found_direction() const {
-  const auto starts = static_cast<Eigen::Index>(12 * start_direction_.size()),
-             lifted = static_cast<Eigen::Index>(lifted_direction_.size());
-  VecX all(starts + lifted + 3 * static_cast<Eigen::Index>(contact_count()));
-  for (std::size_t g = 0; g < start_direction_.size(); ++g)
-    all.segment<12>(static_cast<Eigen::Index>(12 * g)) = start_direction_[g];
-  all.segment(starts, lifted) = Eigen::Map<const VecX>(lifted_direction_.data(), lifted);
-  for (std::size_t i = 0; i < contact_count(); ++i)
-    all.segment<3>(starts + lifted + static_cast<Eigen::Index>(3 * i)) = touch_->direction[i];
-  return all;
+void ShootingRod::find_direction_in_case(const Eigen::Ref<const VecX>& column) {
+  Open& open = *open_;
+  const auto forces = 3 * static_cast<Eigen::Index>(open.contacts.size());
+  open.weights.setZero();
+  open.weights.head(forces) = column.segment(13, forces) / port_scale_.force;
+  open.weights.segment(Open::kUsed * static_cast<Eigen::Index>(open.force_blocks), open.tensions) =
+      column.tail(open.tensions);
+  find_direction(column.head<6>(), column.segment<6>(6), column[12]);
 }
 
-void ShootingRod::take_direction(const VecX& all) {
-  start_direction_.resize(starts_.size());
-  lifted_direction_.resize(static_cast<std::size_t>(cells_ * kernel_->lifted));
-  const double* from = all.data();
-  for (Vec12& start : start_direction_) {
-    start = Eigen::Map<const Vec12>(from);
-    from += 12;
+// Of all lifted unknowns: strains follow from them.
+void ShootingRod::find_directions(const MatX& cases, MatX& directions) {
+  directions.resize(cells_ * kernel_->lifted, cases.cols());
+  note_turning();
+  for (Eigen::Index c = 0; c < cases.cols(); ++c) {
+    find_direction_in_case(cases.col(c));
+    directions.col(c) = Eigen::Map<const VecX>(lifted_direction_.data(), directions.rows());
   }
-  std::copy_n(from, lifted_direction_.size(), lifted_direction_.begin());
-  from += lifted_direction_.size();
-  for (std::size_t i = 0; i < contact_count(); ++i, from += 3)
-    touch_->direction[i] = vector_at(from);
-  tension_direction_ = all.tail(tendons_->unknowns());
 }
 
 // u - u0 - C_bt (R^T m - Lambda_m), v - v0 - C_se (R^T n - Lambda_n)
-void ShootingRod::add_tension(Eigen::Index unknown, bool add) {
-  if (!add) {
-    stages_ = kept_stages_;
-    return;
-  }
-  kept_stages_ = stages_;
-  for (std::size_t j = 0; j < stages_.size(); ++j) {
-    const CellSection& at = coefficients_at(j);
-    const Vec6 Lambda = tendons_->per_unknown(unknown, j);
-    for (int i = 0; i < 3; ++i) {
-      stages_[j].residual_u[i] += at.C_bt[i] * Lambda[i];
-      stages_[j].residual_v[i] += at.C_se[i] * Lambda[3 + i];
+void ShootingRod::find_tension_sources() {
+  Open& open = *open_;
+  const auto S = static_cast<std::size_t>(table_->stages);
+  const auto lifted = static_cast<std::size_t>(kernel_->lifted),
+             cells = static_cast<std::size_t>(cells_);
+  const std::size_t blocks = open.block_count() - open.force_blocks;
+  open.sources.assign(blocks * cells * lifted * kWide, 0);
+  for (Eigen::Index k = 0; k < open.tensions; ++k) {
+    const double unit = tendons_->unit(k);
+    const auto block = static_cast<std::size_t>(k / Open::kUsed),
+               column = static_cast<std::size_t>(k % Open::kUsed);
+    for (std::size_t j = 0; j < stages_.size(); ++j) {
+      const CellSection& at = coefficients_at(j);
+      const Vec6 Lambda = unit * tendons_->per_unknown(k, j);
+      double* rows = &open.sources[(block * cells + j / S) * lifted * kWide] + column;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto e = static_cast<Eigen::Index>(i);
+        rows[(3 * (j % S) + i) * kWide] = at.C_bt[i] * Lambda[e];
+        rows[(3 * S + 3 * (j % S) + i) * kWide] = at.C_se[i] * Lambda[3 + e];
+      }
     }
   }
 }
 
-std::vector<Vec6> ShootingRod::strain_rates(const VecX& direction) const {
+const double* ShootingRod::tension_sources(std::size_t cell, std::size_t block) const {
+  const auto lifted = static_cast<std::size_t>(kernel_->lifted),
+             cells = static_cast<std::size_t>(cells_);
+  return &open_->sources[(block * cells + cell) * lifted * kWide];
+}
+
+void ShootingRod::note_turning() {
+  turning_.resize(2 * stages_.size());
+  for (std::size_t j = 0; j < stages_.size(); ++j) {
+    const Vec3 Omega = vector_at(stages_[j].Omega);
+    turning_[2 * j] = right_jacobian(Omega);
+    turning_[2 * j + 1] = right_jacobian_derivative(Omega, vector_at(stages_[j].w));
+  }
+}
+
+// du = J_r dw + D dOmega, after note_turning()
+void ShootingRod::strain_rates(const Eigen::Ref<const VecX>& direction,
+                               std::vector<Vec6>& rates) const {
   const auto S = static_cast<std::size_t>(table_->stages);
-  std::vector<Vec6> rates(stages_.size());
-  const double* d = direction.data() + 12 * starts_.size();
+  rates.resize(stages_.size());
+  const double* d = direction.data();
   for (std::size_t c = 0; c < static_cast<std::size_t>(cells_); ++c, d += kernel_->lifted)
     for (std::size_t j = 0; j < S; ++j) {
-      const CellStage& stage = stages_[c * S + j];
       Vec3 dOmega = Vec3::Zero();
       for (std::size_t k = 0; k < S; ++k)
         dOmega += cell_length(c) * table_->a[j][k] * vector_at(d + 3 * k);
-      const Vec3 Omega = vector_at(stage.Omega);
-      rates[c * S + j] << right_jacobian(Omega) * vector_at(d + 3 * j) +
-                              right_jacobian_derivative(Omega, vector_at(stage.w)) * dOmega,
+      const Mat3* turning = &turning_[2 * (c * S + j)];
+      rates[c * S + j] << turning[0] * vector_at(d + 3 * j) + turning[1] * dOmega,
           vector_at(d + 3 * S + 3 * j);
     }
-  return rates;
 }
 
 }  // namespace cprsim

@@ -111,7 +111,7 @@ void StrainRod::prepare(const StageRates& rates, const RodForcing& forcing) {
     add_thermal_strain(-1, forcing.heat, q);
   }
   forcing_ = forcing;
-  if (tendons_) tendons_->set(forcing.tendons);
+  if (tendons_) tendons_->set(forcing.tendons, forcing.length);
   assert(forcing_.loads.size() == load_at_.size());
   k_.assign(points_.size(), 0);
   double k_most = 0;

@@ -222,10 +222,22 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
 
   Eigen::Index freedoms() const override { return space_.freedoms(); }
 
-  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out) override;
-  VecX direction_given(const Vec6& z, const Vec6& zeta_A) override;
-  void add_tension(Eigen::Index unknown, bool add) override;
-  std::vector<Vec6> strain_rates(const VecX& direction) const override;
+  bool linearize_given(const Port& base, const Port& tip, CondensedRod& out,
+                       TensionPorts& ports) override {
+    return condense(base, tip, out, &ports);
+  }
+
+  bool condense(const Port& base, const Port& tip, CondensedRod& out, TensionPorts* tensions);
+
+  OpenPorts* ports_of_forces() override { return force_columns() > 0 ? &touch_->ports() : nullptr; }
+
+  void find_directions(const MatX& cases, MatX& directions) override {
+    directions.noalias() = general_ * cases;
+  }
+
+  void add_tensions(Eigen::Ref<MatX> columns) const;
+  void strain_rates(const Eigen::Ref<const VecX>& direction,
+                    std::vector<Vec6>& rates) const override;
 
   // contact
   const std::vector<NodeState>& grid_nodes() const override { return nodes_; }
@@ -320,7 +332,7 @@ class StrainRod final : public RodModel, private TensionedRod, private ContactHo
 
   EffectPart<RodTendons> tendons_;  ///< sections: points
   TendonBorder border_;
-  VecX tension_direction_, kept_residual_;
+  VecX tension_direction_;
   EffectPart<RodDisks> disks_;  ///< null: none
 
   /// What a sweep writes along one element, kept so that it need not ask for memory.

@@ -70,35 +70,29 @@ ThermalEffort StrainRod::thermal_effort() const {
 
 RodEnergy StrainRod::energy() const {
   RodEnergy energy;
+  double carried = 0;
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const double weight = weight_of(j);
     energy.kinetic += weight * 0.5 * section(j).rhoA *
                       track_.v.segment<3>(static_cast<Eigen::Index>(3 * j)).squaredNorm();
     energy.gravity -= weight * section(j).weighing_mass() * forcing_.gravity.dot(points_[j].p);
+    const StrainPoint& at = points_[j];
+    carried +=
+        weight * own_work(at.R, at.m, at.n, at.u, at.v, tendons_ ? &tendons_->at(j) : nullptr);
     if (options_.drag || options_.line_loads)
       fluid_.add_power(j, points_[j].R.col(2), weight, track_, energy);
     if (rotary_.empty()) continue;
     const Vec3 omega = Eigen::Map<const Vec3>(rotary_[j].omega);
     energy.kinetic += weight * 0.5 * omega.dot(section(j).rhoJ.cwiseProduct(omega));
   }
-  if (disks_) disks_->add_energy(track_, energy);
   if (sections_.empty())
     add_strain_energy(energy);
   else
     add_varying_strain_energy(energy);
   energy.magnetic = magnetic_energy(forcing_.field);
+  energy.set_feed_power(carried, forcing_.length, tendons_.get());
+  if (disks_) disks_->add_energy(track_, energy);
   if (touch_) energy.damping_power += touch_->friction_power();
-  // what a unit feed brings in, see ShootingRod::energy
-  const VecX phi = legendre(0, rule_.order);
-  double density = 0;
-  for (std::size_t a = 0; a < modes_.size(); ++a)
-    if (modes_[a].listed)
-      density += 0.5 * modes_[a].K * std::pow(q_[0].row(static_cast<Eigen::Index>(a)).dot(phi), 2);
-  const NodeState& base = nodes_.front();
-  const Mat3 R = rotation_of(base);
-  energy.feed_power = density - (R.transpose() * force_of(base)).dot(strain(0, phi, false)) -
-                      (R.transpose() * moment_of(base)).dot(strain(0, phi, true)) -
-                      section_.weighing_mass() * forcing_.gravity.dot(position_of(base));
   return energy;
 }
 

@@ -210,32 +210,26 @@ void StrainRod::sweep_columns() {
   tip_columns_ = y;
 }
 
-bool StrainRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
-  return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
-                          : linearize_given(base, tip, out);
-}
-
-void StrainRod::add_tension(Eigen::Index unknown, bool add) {
-  if (!add) {
-    law_residual_ = kept_residual_;
-    return;
-  }
-  kept_residual_ = law_residual_;
+// What a unit of each of the tendons' unknowns does to the residual of (4).
+void StrainRod::add_tensions(Eigen::Ref<MatX> columns) const {
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const std::size_t e = j / static_cast<std::size_t>(rule_.points());
     const auto i = static_cast<Eigen::Index>(j % static_cast<std::size_t>(rule_.points()));
-    const Vec6 Lambda = tendons_->per_unknown(unknown, j);
-    for (std::size_t f = 0; f < free_modes_.size(); ++f) {
-      const StrainMode& mode = modes_[free_modes_[f]];
-      const double along = mode.axis.dot(Lambda.segment<3>(mode.turns ? 0 : 3));
-      law_residual_.segment(first_unknown(e, f), rule_.functions()) +=
-          compliance(mode, j) * rule_.gauss.weights[i] / unit(mode) * along * rule_.phi.col(i);
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+      const Vec6 Lambda = tendons_->unit(k) * tendons_->per_unknown(k, j);
+      for (std::size_t f = 0; f < free_modes_.size(); ++f) {
+        const StrainMode& mode = modes_[free_modes_[f]];
+        const double along = mode.axis.dot(Lambda.segment<3>(mode.turns ? 0 : 3));
+        columns.col(k).segment(first_unknown(e, f), rule_.functions()) +=
+            compliance(mode, j) * rule_.gauss.weights[i] / unit(mode) * along * rule_.phi.col(i);
+      }
     }
   }
 }
 
-std::vector<Vec6> StrainRod::strain_rates(const VecX& direction) const {
-  std::vector<Vec6> rates(points_.size(), Vec6::Zero());
+void StrainRod::strain_rates(const Eigen::Ref<const VecX>& direction,
+                             std::vector<Vec6>& rates) const {
+  rates.assign(points_.size(), Vec6::Zero());
   for (std::size_t j = 0; j < points_.size(); ++j) {
     const std::size_t e = j / static_cast<std::size_t>(rule_.points());
     const auto i = static_cast<Eigen::Index>(j % static_cast<std::size_t>(rule_.points()));
@@ -248,22 +242,29 @@ std::vector<Vec6> StrainRod::strain_rates(const VecX& direction) const {
           mode.axis;
     }
   }
-  return rates;
 }
 
-bool StrainRod::linearize_given(const Port& base, const Port& tip, CondensedRod& out) {
+bool StrainRod::linearize(const Port& base, const Port& tip, CondensedRod& out) {
+  return finds_tensions() ? border_.linearize(*this, *tendons_, base, tip, out)
+                          : condense(base, tip, out, nullptr);
+}
+
+bool StrainRod::condense(const Port& base, const Port& tip, CondensedRod& out,
+                         TensionPorts* tensions) {
   const Eigen::Index d = space_.freedoms(), n = strain_unknowns(), states = 2 * d;
-  const Eigen::Index forces = force_columns(), known = 2 * d + 1;
+  const Eigen::Index forces = force_columns(), known = 2 * d + 1,
+                     pulls = tensions ? tendons_->unknowns() : 0;
   sweep_columns();
-  // the base's rows and (4): A x + B [zeta_A; 1; F] = 0
+  // the base's rows and (4): A x + B [zeta_A; 1; F; tensions] = 0
   const ConditionRows held = base_.rows(start_, base, scale_);
   const MatX from_x = space_.state * state_units().asDiagonal();
-  MatX A = MatX::Zero(d + n, states + n), B = MatX::Zero(d + n, d + 1 + forces);
+  MatX A = MatX::Zero(d + n, states + n), B = MatX::Zero(d + n, d + 1 + forces + pulls);
   A.topLeftCorner(d, states) = held.by_state * from_x;
   A.bottomRows(n) = law_columns_.leftCols(states + n);
   B.topLeftCorner(d, d) = held.by_body * space_.motion;
   B.col(d) << held.value - base_gap_, law_residual_;
-  B.bottomRightCorner(n, forces) = law_columns_.rightCols(forces);
+  B.block(d, d + 1, n, forces) = law_columns_.rightCols(forces);
+  if (tensions) add_tensions(B.bottomRightCorner(n, pulls));
   if (!general_solution(A, B, general_)) return false;
   out.growth = general_.leftCols(d).cwiseAbs().maxCoeff();
 
@@ -272,17 +273,17 @@ bool StrainRod::linearize_given(const Port& base, const Port& tip, CondensedRod&
   // what the forces do beside moving x
   const auto answer = [&](const auto& columns) {
     MatX all = columns.leftCols(states + n) * general_;
-    all.rightCols(forces) += columns.rightCols(forces);
+    all.middleCols(known, forces) += columns.rightCols(forces);
     return all;
   };
-  OpenPorts* const ports = forces > 0 ? &touch_->ports() : nullptr;
-  condense_tip(space_, closed, tip_.held(), nodes_.back(), tip, answer(tip_columns_), out, ports);
-  condense_base(space_, start_, base, from_x * general_.topRows(states), out, ports);
-  if (ports == nullptr) return true;
-  std::vector<MatX> moves(nodes_.size(), MatX(6, known + forces));
+  const MorePorts more{forces > 0 ? &touch_->ports() : nullptr, tensions, pulls};
+  condense_tip(space_, closed, tip_.held(), nodes_.back(), tip, answer(tip_columns_), out, more);
+  condense_base(space_, start_, base, from_x * general_.topRows(states), out, more);
+  if (!more.forces) return true;
+  std::vector<MatX> moves(nodes_.size(), MatX(6, general_.cols()));
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     moves[k] << answer(node_turns_[k]), answer(node_moves_[k]);
-  touch_->describe_motions(moves);
+  touch_->describe_motions(moves, tensions ? &tensions->motions : nullptr);
   return true;
 }
 
@@ -309,21 +310,16 @@ Vec6 StrainRod::wrench_on_tip(const Port& tip) const {
 }
 
 void StrainRod::set_direction(const Vec6& z, const Vec6& zeta_A) {
-  if (!finds_tensions()) {
-    direction_ = direction_given(z, zeta_A);
+  const VecX forces = force_columns() > 0 ? touch_->direction() : VecX(0);
+  if (finds_tensions()) {
+    direction_ = general_ * border_.complete(z, zeta_A, forces);
+    tension_direction_ = border_.tensions(*tendons_);
     return;
   }
-  const VecX all = border_.direction(z, zeta_A);
-  direction_ = all.head(all.size() - tendons_->unknowns());
-  tension_direction_ = all.tail(tendons_->unknowns());
-}
-
-VecX StrainRod::direction_given(const Vec6& z, const Vec6& zeta_A) {
   const Eigen::Index d = space_.freedoms();
-  return general_.leftCols(d) * z.head(d) + general_.middleCols(d, d) * zeta_A.head(d) +
-         general_.col(2 * d) +
-         (force_columns() > 0 ? VecX(general_.rightCols(force_columns()) * touch_->direction())
-                              : VecX::Zero(general_.rows()));
+  direction_ = general_.leftCols(d) * z.head(d) + general_.middleCols(d, d) * zeta_A.head(d) +
+               general_.col(2 * d);
+  if (force_columns() > 0) direction_ += general_.rightCols(force_columns()) * forces;
 }
 
 void StrainRod::keep() {

@@ -139,7 +139,11 @@ void StrainRod::start_tracks() {
 // The direction taken as a velocity, through the variational equations that gave it.
 void StrainRod::start_tracks_moving() {
   start_tracks();
-  if (tendons_) tendons_->start_track_moving(strain_rates(direction_));
+  if (tendons_) {
+    std::vector<Vec6> rates;
+    strain_rates(direction_, rates);
+    tendons_->start_track_moving(rates);
+  }
   VecX v = VecX::Zero(track_.x.size());
   const VecX moving = direction_with_forces();
   Eigen::Index at = 0;

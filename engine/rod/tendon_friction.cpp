@@ -50,10 +50,10 @@ std::vector<double> interpolation(const std::vector<double>& x, double z, bool s
 
 }  // namespace
 
-TendonFriction::TendonFriction(double mu, double end, std::size_t index, double length,
+TendonFriction::TendonFriction(double mu, double end, std::size_t index,
                                const std::vector<AskedSection>& sections,
                                std::vector<double> stations)
-    : mu_(mu), length_(length), stick_(kStickRange * length), index_(index) {
+    : mu_(mu), index_(index) {
   stations.push_back(end);
   std::sort(stations.begin(), stations.end());
   double from = 0;
@@ -82,15 +82,27 @@ TendonFriction::TendonFriction(double mu, double end, std::size_t index, double 
   const auto n = static_cast<Eigen::Index>(count_);
   basis_.resize(n, c_.size());
   for (std::size_t j = 0; j < count_; ++j) {
-    weights_.push_back(sections[j].weight * length);
+    weights_.push_back(sections[j].weight);
     basis_.row(static_cast<Eigen::Index>(j)) = basis(sections[j].s, sections[j].inside);
   }
   factors_ = VecX::Ones(static_cast<Eigen::Index>(sections.size()));
   t_.assign(count_, Vec3::Zero());
   u_ = heading_ = t_;
-  kappa_ = passed_ = passed_before_ = VecX::Zero(n);
+  kappa_ = passed_ = passed_before_ = unloaded_ = VecX::Zero(n);
   phi_ = phi_before_ = VecX::Ones(n);
   slips_.assign(count_, 1);
+  scratch_.dt = t_;
+  scratch_.stretched = scratch_.turned = scratch_.dphi = phi_;
+}
+
+void TendonFriction::lie_along(double length, const double* unloaded, std::size_t apart) {
+  length_ = length;
+  for (Eigen::Index i = 0; i < unloaded_.size(); ++i)
+    unloaded_[i] = unloaded[apart * static_cast<std::size_t>(i)];
+}
+
+double TendonFriction::stick() const {
+  return kStickRange * length_;
 }
 
 void TendonFriction::add_span(double from, double to, const std::vector<AskedSection>& sections) {
@@ -116,16 +128,19 @@ void TendonFriction::add_span(double from, double to, const std::vector<AskedSec
     s.push_back(at.s);
   }
   const MatX PW = P * weights.asDiagonal();
-  span.fit = (to - from) * length_ * MatX(PW * P.transpose()).fullPivLu().solve(PW);
-  const std::size_t m = std::min(kSlopePoints, span.count);
-  for (std::size_t i = 0; i < span.count; ++i) {
-    const std::size_t first = std::min(i - std::min(i, m / 2), span.count - m);
+  span.fit = (to - from) * MatX(PW * P.transpose()).fullPivLu().solve(PW);
+  for (std::size_t i = 0, begin = 0, end = 0; i < span.count; ++i) {
+    // pieces of splines have a section each where they meet: slopes are those of one piece
+    if (i == end) {
+      begin = end++;
+      while (end < span.count && s[end] > s[end - 1])
+        ++end;
+    }
+    const std::size_t m = std::min(kSlopePoints, end - begin);
+    const std::size_t first = std::min(i - std::min(i - begin, m / 2), end - m);
     const std::vector<double> x(s.begin() + static_cast<std::ptrdiff_t>(first),
                                 s.begin() + static_cast<std::ptrdiff_t>(first + m));
-    Stencil slope{span.first + first, interpolation(x, s[i], true)};
-    for (double& weight : slope.weights)
-      weight /= length_;
-    slopes_.push_back(slope);
+    slopes_.push_back({span.first + first, interpolation(x, s[i], true)});
   }
   spans_.push_back(span);
 }
@@ -148,7 +163,8 @@ Eigen::RowVectorXd TendonFriction::basis(double s, double inside) const {
 
 void TendonFriction::set_values(const VecX& c) {
   c_ = c;
-  factors_.head(basis_.rows()) = (-mu_ * (basis_ * c_)).array().exp();
+  scratch_.turned.noalias() = basis_ * c_;
+  factors_.head(basis_.rows()) = (-mu_ * scratch_.turned).array().exp();
 }
 
 double TendonFriction::factor_at(double s, double inside) const {
@@ -178,17 +194,19 @@ TendonFriction::Turn TendonFriction::turn(const Vec3& left, const Vec3& right) {
   return turn;
 }
 
-// Lengths of tendon from the middle of a section to its end, negative.
+// From the middle of a section to its end.
 void TendonFriction::find_passed(const std::vector<TendonSection>& sections) {
   double beyond = 0;
   for (std::size_t j = count_; j-- > 0;) {
-    const double here = 0.5 * weights_[j] * sections[j].stretch[index_];
-    passed_[static_cast<Eigen::Index>(j)] = -(beyond + here);
+    const auto i = static_cast<Eigen::Index>(j);
+    const double here = 0.5 * weights_[j] * length_ * (unloaded_[i] - sections[j].stretch[index_]);
+    passed_[i] = beyond + here;
     beyond += 2 * here;
   }
 }
 
-VecX TendonFriction::gaps(const std::vector<TendonSection>& sections, const std::vector<Vec3>& u) {
+void TendonFriction::gaps(const std::vector<TendonSection>& sections, const std::vector<Vec3>& u,
+                          Eigen::Ref<VecX> gap) {
   for (std::size_t j = 0; j < count_; ++j) {
     t_[j] = direction(sections[j]);
     u_[j] = u[j];
@@ -196,31 +214,33 @@ VecX TendonFriction::gaps(const std::vector<TendonSection>& sections, const std:
   find_passed(sections);
   for (std::size_t j = 0; j < count_; ++j) {
     const auto i = static_cast<Eigen::Index>(j);
-    const Vec3 turning = slopes_[j].of(t_) + u_[j].cross(t_[j]);
+    const Vec3 turning = slopes_[j].of(t_) / length_ + u_[j].cross(t_[j]);
     kappa_[i] = turning.norm();
     heading_[j] = kappa_[i] * length_ > kStraight ? Vec3(turning / kappa_[i]) : Vec3(Vec3::Zero());
     const double trial =
-        engaged_ ? phi_before_[i] + (passed_[i] - passed_before_[i]) / stick_ : 1.0;
+        engaged_ ? phi_before_[i] + (passed_[i] - passed_before_[i]) / stick() : 1.0;
     phi_[i] = std::clamp(trial, -1.0, 1.0);
     slips_[j] = !engaged_ || std::abs(trial) > 1;  // to begin with it sticks
   }
-  VecX gap = -c_;
-  for (const Span& span : spans_) {
-    const auto first = static_cast<Eigen::Index>(span.first),
-               n = static_cast<Eigen::Index>(span.count);
-    gap.segment(span.unknown, span.degrees) +=
-        span.fit * phi_.segment(first, n).cwiseProduct(kappa_.segment(first, n));
-  }
+  gap = -c_;
+  scratch_.turned = length_ * phi_.cwiseProduct(kappa_);
+  add_fitted(gap);
   for (const Bend& bend : bends_)
     gap[bend.unknown] += phi_[static_cast<Eigen::Index>(bend.before)] *
                          turn(bend.left.of(t_), bend.right.of(t_)).angle;
-  return gap;
 }
 
-VecX TendonFriction::rates(const std::vector<TendonSection>& sections,
-                           const std::vector<Vec6>& strain_rates) const {
-  std::vector<Vec3> dt(count_);
-  VecX stretched(static_cast<Eigen::Index>(count_));
+void TendonFriction::add_fitted(Eigen::Ref<VecX> sum) const {
+  for (const Span& span : spans_)
+    sum.segment(span.unknown, span.degrees).noalias() +=
+        span.fit.lazyProduct(scratch_.turned.segment(static_cast<Eigen::Index>(span.first),
+                                                     static_cast<Eigen::Index>(span.count)));
+}
+
+void TendonFriction::rates(const std::vector<TendonSection>& sections,
+                           const std::vector<Vec6>& strain_rates, Eigen::Ref<VecX> rate) const {
+  std::vector<Vec3>& dt = scratch_.dt;
+  VecX &stretched = scratch_.stretched, &dphi = scratch_.dphi, &turned = scratch_.turned;
   for (std::size_t j = 0; j < count_; ++j) {
     const Vec3 r = Eigen::Map<const Vec3>(sections[j].places[index_].r);
     const Vec3 dg = strain_rates[j].tail<3>() + strain_rates[j].head<3>().cross(r);
@@ -228,29 +248,25 @@ VecX TendonFriction::rates(const std::vector<TendonSection>& sections,
     stretched[static_cast<Eigen::Index>(j)] = along;
     dt[j] = (dg - along * t_[j]) / sections[j].stretch[index_];
   }
-  VecX dphi = VecX::Zero(static_cast<Eigen::Index>(count_)), dkappa = dphi;
+  dphi.setZero();
   double beyond = 0;
   for (std::size_t j = count_; j-- > 0;) {
     const auto i = static_cast<Eigen::Index>(j);
-    const double here = 0.5 * weights_[j] * stretched[i];
-    if (!slips_[j]) dphi[i] = -(beyond + here) / stick_;
+    const double here = 0.5 * weights_[j] * length_ * stretched[i];
+    if (!slips_[j]) dphi[i] = -(beyond + here) / stick();
     beyond += 2 * here;
-    dkappa[i] = heading_[j].dot(slopes_[j].of(dt) + strain_rates[j].head<3>().cross(t_[j]) +
-                                u_[j].cross(dt[j]));
+    const double dkappa = heading_[j].dot(
+        slopes_[j].of(dt) / length_ + strain_rates[j].head<3>().cross(t_[j]) + u_[j].cross(dt[j]));
+    turned[i] = length_ * (phi_[i] * dkappa + dphi[i] * kappa_[i]);
   }
-  VecX rate = VecX::Zero(c_.size());
-  const VecX turned = phi_.cwiseProduct(dkappa) + dphi.cwiseProduct(kappa_);
-  for (const Span& span : spans_)
-    rate.segment(span.unknown, span.degrees) +=
-        span.fit * turned.segment(static_cast<Eigen::Index>(span.first),
-                                  static_cast<Eigen::Index>(span.count));
+  rate.setZero();
+  add_fitted(rate);
   for (const Bend& bend : bends_) {
     const auto i = static_cast<Eigen::Index>(bend.before);
     const Turn at = turn(bend.left.of(t_), bend.right.of(t_));
     rate[bend.unknown] += dphi[i] * at.angle + phi_[i] * (at.by_left.dot(bend.left.of(dt)) +
                                                           at.by_right.dot(bend.right.of(dt)));
   }
-  return rate;
 }
 
 void TendonFriction::accept() {

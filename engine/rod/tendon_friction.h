@@ -10,7 +10,8 @@
 // phi = 1: it slips towards its motor, or is about to: equilibria at the start and in statics,
 // which do not know how they were reached. From then on phi follows what the tendon does, by return
 // mapping from the end of the last step as in engine/robot/axis_law.h: with y(s) the length of
-// tendon that has passed s towards the motor,
+// tendon that has passed s towards the motor, by which its way beyond s is shorter than along the
+// unloaded rod,
 //   phi = clamp(phi_0 + (y - y_0) / y_stick, -1, 1)                                            (2)
 // so that it sticks, turns over when it is paid out, and takes energy either way. (2) holds as long
 // as the tendon is taut beyond s.
@@ -36,8 +37,11 @@ struct TendonSection;
 class TendonFriction {
  public:
   /// Of tendon `index` of all sections. @param stations s where spans end, in any order
-  TendonFriction(double mu, double end, std::size_t index, double length,
+  TendonFriction(double mu, double end, std::size_t index,
                  const std::vector<AskedSection>& sections, std::vector<double> stations);
+
+  /// A rod of this length. @param unloaded |g| there, of each section, so far apart
+  void lie_along(double length, const double* unloaded, std::size_t apart);
 
   Eigen::Index unknowns() const { return c_.size(); }
 
@@ -53,10 +57,11 @@ class TendonFriction {
   double factor_by(Eigen::Index unknown, std::size_t section) const;
 
   /// C - c of (3), sections being evaluated. @param u curvatures
-  VecX gaps(const std::vector<TendonSection>& sections, const std::vector<Vec3>& u);
+  void gaps(const std::vector<TendonSection>& sections, const std::vector<Vec3>& u,
+            Eigen::Ref<VecX> gap);
   /// Of C at rates of (u, v), after gaps().
-  VecX rates(const std::vector<TendonSection>& sections,
-             const std::vector<Vec6>& strain_rates) const;
+  void rates(const std::vector<TendonSection>& sections, const std::vector<Vec6>& strain_rates,
+             Eigen::Ref<VecX> rate) const;
 
   /// From here on (2).
   void engage() { engaged_ = true; }
@@ -84,7 +89,7 @@ class TendonFriction {
     double from = 0, to = 0;  ///< s
     std::size_t first = 0, count = 0;
     Eigen::Index unknown = 0, degrees = 0;
-    MatX fit;  ///< coefficients by phi kappa at its sections
+    MatX fit;  ///< coefficients, over the rod's length, by phi kappa at its sections
   };
 
   /// Between two spans.
@@ -105,13 +110,19 @@ class TendonFriction {
   static Turn turn(const Vec3& left, const Vec3& right);
   Vec3 direction(const TendonSection& section) const;
   void find_passed(const std::vector<TendonSection>& sections);
+  /// What polynomials fitted to the last turning add to coefficients.
+  void add_fitted(Eigen::Ref<VecX> sum) const;
 
-  double mu_ = 0, length_ = 0, stick_ = 0;
+  /// y_stick of (2).
+  double stick() const;
+
+  double mu_ = 0, length_ = 1;
   std::size_t index_ = 0, count_ = 0;  ///< sections that it passes are the first `count_`
   std::vector<Span> spans_;
   std::vector<Bend> bends_;
-  std::vector<Stencil> slopes_;  ///< of t at the sections, 1/m
-  std::vector<double> weights_;  ///< m
+  std::vector<Stencil> slopes_;  ///< of t at the sections, by s over the length
+  std::vector<double> weights_;  ///< fractions of the length
+  VecX unloaded_;                ///< |g| of the unloaded rod
   MatX basis_;                   ///< B of (3): sections × unknowns
   VecX c_, factors_;
 
@@ -119,6 +130,14 @@ class TendonFriction {
   std::vector<Vec3> t_, u_, heading_;  ///< heading: of the turning, a unit vector or 0
   VecX kappa_, phi_, passed_;          ///< passed: y of (2)
   std::vector<char> slips_;
+
+  /// What rates() writes on its way.
+  struct Scratch {
+    std::vector<Vec3> dt;
+    VecX stretched, turned, dphi;
+  };
+
+  mutable Scratch scratch_;
 
   bool engaged_ = false;
   VecX phi_before_, passed_before_;  ///< at the end of the last step

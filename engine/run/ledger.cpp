@@ -8,48 +8,6 @@
 
 namespace cprsim {
 
-void EnergyLedger::collect(double t, bool before) {
-  points_.clear();
-  for (const BodyLoad& load : robot_.body_loads) {
-    const Pose X = robot_.pose_of(load.at);
-    const PointLoad at = load_at(*load.spec, t, before);
-    const Mat3 axes = at.follower ? X.R : Mat3(Mat3::Identity());
-    points_.push_back({axes * at.force, axes * at.torque, X.p, X.R});
-  }
-  for (const RobotRod& rod : robot_.rods) {
-    collect_torques(rod, t, before);
-    if (rod.loads.empty()) continue;
-    const RodSample sample = rod.model->observe();
-    for (const LoadSpec* load : rod.loads) {
-      const PointLoad at = load_at(*load, t, before);
-      const RodPoint* nearest = &sample.points.front();
-      for (const RodPoint& point : sample.points)
-        if (std::abs(point.s - load->rod_s) < std::abs(nearest->s - load->rod_s)) nearest = &point;
-      const Mat3 axes = at.follower ? nearest->rotation : Mat3(Mat3::Identity());
-      points_.push_back({axes * at.force, axes * at.torque, nearest->position, nearest->rotation});
-    }
-  }
-}
-
-// Of loads along the rod; the power of their forces is the rod's (RodEnergy::fluid_power).
-void EnergyLedger::collect_torques(const RobotRod& rod, double t, bool before) {
-  for (const LoadSpec* load : rod.line_loads) {
-    const LineLoad line = line_load_at(*load, t, before);
-    if (line.torque.isZero(0)) continue;
-    const RodSample sample = rod.model->observe();
-    for (std::size_t k = 0; k + 1 < sample.points.size(); ++k) {
-      const RodPoint &a = sample.points[k], &b = sample.points[k + 1];
-      const double middle = 0.5 * (a.s + b.s);
-      if (middle < line.from || middle > line.to) continue;
-      for (const RodPoint* point : {&a, &b}) {
-        const Mat3 axes = line.follower ? point->rotation : Mat3(Mat3::Identity());
-        const Vec3 torque = 0.5 * (b.s - a.s) * rod.length * (axes * line.torque);
-        points_.push_back({Vec3::Zero(), torque, point->position, point->rotation});
-      }
-    }
-  }
-}
-
 namespace {
 
 /// Speed that a drive of position or velocity prescribes.
@@ -93,9 +51,22 @@ bool EnergyLedger::speeds_jumped() const {
   return std::any_of(jumps_.begin(), jumps_.end(), [](const Jump& jump) { return jump.half != 0; });
 }
 
+// What motors of given displacements put in, by the tensions that turn out.
+double EnergyLedger::pulling_power(const RobotRod& rod, double t, bool before) const {
+  double power = 0;
+  std::vector<TendonSample> now;
+  for (std::size_t k = 0; k < rod.tendons.size(); ++k) {
+    if (!displaces(rod.tendons[k])) continue;
+    if (now.empty()) now = rod.model->tendons();
+    power += now[k].tension * rod.tendons[k].drive->profile.evaluate(t, before).rate;
+  }
+  return power;
+}
+
 double EnergyLedger::drive_power(double t, bool before) const {
   double power = 0;
   for (const RobotRod& rod : robot_.rods) {
+    power += pulling_power(rod, t, before);
     if (rod.length_drive)
       power += rod.model->energy().feed_power * rod.length_drive->evaluate(t, before).rate;
     if (rod.section.fluid.resists() || !rod.line_loads.empty())
@@ -291,8 +262,9 @@ double work_of(const Course& tension, const Course& displacement) {
 
 }  // namespace
 
-// Trapezoidal in the displacement where nothing has a rate or a tension is found; otherwise by the
-// rates at both ends, of higher order than the schemes.
+// Trapezoidal in the displacement where nothing has a rate; otherwise by the rates at both ends, of
+// higher order than the schemes, or, where a tension is found, by the schemes' own quadrature of
+// its power.
 EnergyLedger::TendonWork EnergyLedger::tendon_work(double t) const {
   const std::vector<std::vector<TendonSample>> now = tendons_now(t, true);
   const bool moves = robot_.scene->simulation.mode == Mode::kDynamic;
@@ -302,7 +274,8 @@ EnergyLedger::TendonWork EnergyLedger::tendon_work(double t) const {
     if (rod.tendons.empty()) continue;
     for (std::size_t k = 0; k < rod.tendons.size(); ++k) {
       const TendonSample &a = tendons_before_[i][k], &b = now[i][k];
-      double motor = 0.5 * (a.tension + b.tension) * (b.displacement - a.displacement);
+      const double mean = 0.5 * (a.tension + b.tension);
+      double motor = mean * (b.displacement - a.displacement);
       const DriveSpec* drive = rod.tendons[k].drive;
       if (moves && drive && drive->quantity == DriveQuantity::kTension) {
         const double h = t - begun_;
@@ -310,7 +283,14 @@ EnergyLedger::TendonWork EnergyLedger::tendon_work(double t) const {
                          h * drive->profile.evaluate(t, true).rate},
                         {a.displacement, b.displacement, h * a.rate, h * b.rate});
       }
-      work.motors += motor;
+      if (displaces(rod.tendons[k])) {
+        // beside its power, what it puts in where it jumps
+        const Profile& profile = drive->profile;
+        work.motors +=
+            mean * (profile.evaluate(begun_, false).value - profile.evaluate(begun_, true).value);
+      } else {
+        work.motors += motor;
+      }
       if (b.along.empty()) continue;
       // what of it reaches the rod, section by section
       work.friction += motor;

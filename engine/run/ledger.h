@@ -60,7 +60,8 @@ class EnergyLedger {
   };
 
   void collect(double t, bool before);
-  void collect_torques(const RobotRod& rod, double t, bool before);
+  void collect_lines(const RobotRod& rod, double t, bool before);
+  void collect_current(const RobotRod& rod);
   double exerted(const JointDrive& drive, double rate) const;
   void note_jumps(double t);
   double friction_energy() const;
@@ -82,6 +83,14 @@ class EnergyLedger {
   };
 
   TendonWork tendon_work(double t) const;
+
+  /// Whether a tendon's motor has a power: it prescribes how fast it pulls.
+  bool displaces(const RobotTendon& tendon) const {
+    return tendon.drive && tendon.drive->quantity == DriveQuantity::kDisplacement &&
+           robot_.scene->simulation.mode == Mode::kDynamic;
+  }
+
+  double pulling_power(const RobotRod& rod, double t, bool before) const;
 
   /// What a rod's energy depends on beside its state, and its derivatives by that.
   struct OnCourse {

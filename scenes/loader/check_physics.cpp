@@ -260,21 +260,6 @@ void check_drives(Reading& r) {
     if (drive.profile.terms.empty()) continue;
     check_finite(r, drive.profile);
     if (drive.rod >= 0) {
-      const RodSpec& rod = scene.rods[at(drive.rod)];
-      if (rod.sections.size() > 1 || !rod.rest_samples.empty())
-        r.report
-            .at(Severity::kError, "E520", drive.place, 13,
-                "rod '" + rod.name + "' cannot be fed: its sections or its rest shape vary")
-            .suggestion = "available: rods that are the same all along";
-      if (!rod.disks.empty())
-        r.report
-            .at(Severity::kError, "E520", drive.place, 13,
-                "rod '" + rod.name + "' cannot be fed: it carries disks")
-            .suggestion = "available: rods that are the same all along";
-      for (const LoadSpec& load : scene.loads)
-        if (load.to && load.rod == drive.rod)
-          r.report.at(Severity::kError, "E520", load.place, 11,
-                      "a load along a rod whose length is driven is not available in this version");
       const Extremes e = extremes_of(drive.profile, scene.simulation.duration, false);
       if (e.least <= 0)
         r.report.at(Severity::kError, "E508", drive.place, 13,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A scene with <planar> may hold nothing that would leave the plane: the planar kernel could not
 // answer for it. Planes at different heights along the normal are fine; a rod stays in one.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/model/planar.h"
@@ -91,9 +92,12 @@ class PlanarCheck {
 
   /// The same bending and shear stiffness about every axis across the tangent.
   static bool alike_all_around(const RodSpec& rod) {
-    const SectionSpec& s = rod.section;
-    const bool round = s.shape == SectionShape::kCircle || s.shape == SectionShape::kAnnulus ||
-                       s.size.x() == s.size.y();
+    const auto is_round = [](const SectionSpec& s) {
+      return s.shape == SectionShape::kCircle || s.shape == SectionShape::kAnnulus ||
+             s.size.x() == s.size.y();
+    };
+    const bool round = is_round(rod.section) &&
+                       std::all_of(rod.sections.begin(), rod.sections.end(), is_round);
     const StiffnessSpec& k = rod.stiffness;
     return (round || k.bending_x) && k.bending_x == k.bending_y && (round || k.shear_x) &&
            k.shear_x == k.shear_y;
@@ -119,17 +123,7 @@ class PlanarCheck {
   }
 
   void check(const RodSpec& rod) {
-    if (rod.sections.size() > 1)
-      complain(rod.place, 10,
-               "the sections of rod '" + rod.name + "' vary, which is known in space only");
-    if (!rod.rest_curvature.isZero() || !rod.rest_samples.empty())
-      complain(rod.place, 10,
-               "rod '" + rod.name + "' is bent at rest, which the planar kernel does not know");
-    if (scene_.effects.has(Effect::kThermal) && rod.temperature && !rod.lacks("thermal") &&
-        !rod.temperature->gradient.isZero(0))
-      complain(rod.place, 10,
-               "rod '" + rod.name +
-                   "' is warmer on one side, which bends it at rest: known in space only");
+    check_rest(rod);
     if (scene_.effects.has(Effect::kMagnetic) && !rod.lacks("magnetic")) check_magnets(rod);
     const bool tip_held = rod.tip.joint != EndJoint::kFree;
     if (!end(rod, rod.base, "base") || (tip_held && !end(rod, rod.tip, "tip"))) return;
@@ -153,6 +147,20 @@ class PlanarCheck {
                "no principal axis of the section of rod '" + rod.name +
                    "' lies along the plane's normal: it would bend out of the plane",
                "turn the frames of its ends about the tangent");
+  }
+
+  /// What bends a rod without a load.
+  void check_rest(const RodSpec& rod) {
+    const Mat3 R = axes_of(rod);
+    bool bends = turns(R * rod.rest_curvature);
+    for (const RestSample& sample : rod.rest_samples)
+      bends = bends || turns(R * sample.curvature);
+    if (bends) complain(rod.place, 10, "rod '" + rod.name + "' is bent at rest, out of the plane");
+    if (!scene_.effects.has(Effect::kThermal) || !rod.temperature || rod.lacks("thermal")) return;
+    const Vec2& gradient = rod.temperature->gradient;
+    if (turns(R * Vec3(gradient.y(), -gradient.x(), 0)))
+      complain(rod.place, 10,
+               "rod '" + rod.name + "' is warmer on one side, which bends it out of the plane");
   }
 
   /// Section axes where the rod begins, up to a turn in the plane.

@@ -39,12 +39,6 @@ void check_magnets(Reading& r, const Node& world) {
     if (!listed)
       r.report.note("W511", rod_node(r, k),
                     "rod '" + rod.name + "' has <magnetization>, magnetic is not listed");
-    for (const DriveSpec& drive : scene.drives)
-      if (drive.rod == static_cast<int>(k) && feels(scene, rod, Effect::kMagnetic))
-        r.report
-            .at(Severity::kError, "E520", drive.place, 13,
-                "rod '" + rod.name + "' cannot be fed: it is magnetised")
-            .suggestion = "available: rods without <magnetization>";
   }
   if (!listed) {
     if (field)

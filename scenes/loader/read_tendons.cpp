@@ -108,30 +108,6 @@ void read_tendons(Reading& r) {
   });
 }
 
-bool rubs(const Scene& scene, const TendonSpec& tendon) {
-  return tendon.friction > 0 && tendon.rod >= 0 && scene.effects.has(Effect::kTendonFriction) &&
-         !scene.rods[at(tendon.rod)].lacks("tendon_friction");
-}
-
-// What a contact's force does to a tension that is itself unknown is not worked out.
-void check_found(Reading& r, const TendonSpec& tendon, const DriveSpec& drive) {
-  const bool displaced = drive.quantity == DriveQuantity::kDisplacement;
-  if (tendon.rod < 0 || (!displaced && !rubs(r.scene, tendon))) return;
-  const RodSpec& rod = r.scene.rods[at(tendon.rod)];
-  const Effects& effects = r.scene.effects;
-  if ((effects.has(Effect::kContact) && !rod.lacks("contact")) ||
-      (effects.has(Effect::kSelfContact) && !rod.lacks("self_contact")))
-    r.report
-        .at(Severity::kError, "E520", drive.place, 13,
-            std::string("a tendon ") + (displaced ? "of given displacement" : "with friction") +
-                " along a rod that may touch something is not available in this version")
-        .suggestion =
-        std::string(
-            "give the rod <without>contact</without> (self_contact too, if the scene lists "
-            "it), or ") +
-        (displaced ? "drive the tension" : "leave friction out");
-}
-
 // That the effect and its data are both there.
 void check_friction(Reading& r) {
   const bool listed = r.scene.effects.has(Effect::kTendonFriction);
@@ -148,20 +124,14 @@ void check_friction(Reading& r) {
                 "tendon_friction is listed and no tendon has <friction>");
 }
 
-// A rod that is fed carries other parts of a tendon through its base, and a tendon that nothing
-// pulls is a mistake rather than a slack one.
+// A tendon that nothing pulls is a mistake rather than a slack one.
 void check_tendons(Reading& r) {
   check_friction(r);
   for (std::size_t k = 0; k < r.scene.tendons.size(); ++k) {
     const TendonSpec& tendon = r.scene.tendons[k];
     bool driven = false;
-    for (const DriveSpec& drive : r.scene.drives) {
+    for (const DriveSpec& drive : r.scene.drives)
       driven = driven || drive.tendon == static_cast<int>(k);
-      if (drive.tendon == static_cast<int>(k)) check_found(r, tendon, drive);
-      if (drive.quantity == DriveQuantity::kLength && drive.rod == tendon.rod)
-        r.report.at(Severity::kError, "E520", tendon.place, 14,
-                    "a tendon along a rod whose length is driven is not available in this version");
-    }
     if (!driven && !r.report.failed())
       r.report
           .at(Severity::kError, "E310", tendon.place, 14,

@@ -51,20 +51,8 @@ std::string obstacle(const Reading& r, int index, std::string& hint) {
       hint = std::string("give the rod <without>") + name + "</without>";
       return "contact of a tied rod, as " + whose;
     }
-  for (const DriveSpec& drive : scene.drives) {
+  for (const DriveSpec& drive : scene.drives)
     if (drive.rod == index) return "a length drive of a tied rod, as " + whose;
-    if (drive.quantity != DriveQuantity::kDisplacement || drive.tendon < 0) continue;
-    if (scene.tendons[at(drive.tendon)].rod == index) {
-      hint = "drive the tension";
-      return "a tendon of given displacement along a tied rod, as " + whose;
-    }
-  }
-  if (effects.has(Effect::kTendonFriction) && !rod.lacks("tendon_friction"))
-    for (const TendonSpec& tendon : scene.tendons)
-      if (tendon.rod == index && tendon.friction > 0) {
-        hint = "give the rod <without>tendon_friction</without>";
-        return "a tendon with friction along a tied rod, as " + whose;
-      }
   return {};
 }
 

@@ -105,8 +105,7 @@ std::vector<RodCase> costed_cases() {
            [](Scene& scene) {
              switch_on(scene, {Effect::kTendonFriction});
              add_tendon(scene, 8e-3, 0, 1).friction = 0.2;
-           },
-           true},
+           }},
           {"varying sections", false, taper},
           {"magnetic, uniform field", false, magnetize_uniformly},
           {"magnetic, dipole", false, magnetize_by_dipole},

@@ -16,7 +16,6 @@ struct RodCase {
   const char* name;  ///< of the effect that it adds to the rod without any
   bool moving = false;
   std::function<void(Scene&)> add = [](Scene&) {};
-  bool border = false;  ///< adds unknowns beside the sections, by which all of them are eliminated
 };
 
 /// The rod without effects first, at rest and moving; then one effect each.

@@ -93,7 +93,7 @@ void add_heat(Scene& scene, double share) {
   switch_on(scene, {Effect::kThermal});
   scene.rods[0].material->thermal_expansion = 1e-4;
   scene.rods[0].temperature.emplace();
-  scene.rods[0].temperature->gradient = share * Vec2(1500, 500);
+  scene.rods[0].temperature->gradient = share * Vec2(1500, 0);
 }
 
 void add_disks(Scene& scene, double share) {
@@ -152,23 +152,16 @@ std::vector<PairedEffect> paired_effects() {
           {.name = "rotary inertia", .add = add_rotary_inertia, .moving = true, .whole = true},
           {.name = "damping", .add = add_damping, .moving = true},
           {.name = "fluid", .add = add_fluid},
-          {.name = "load along it", .add = add_line_load, .length_stays = false},
+          {.name = "load along it", .add = add_line_load},
           {.name = "follower", .add = add_follower},
-          {.name = "tendon", .add = add_wound_tendon, .in_plane = false, .length_stays = false},
-          {.name = "tendon of given length",
-           .add = add_displaced_tendon,
-           .length_stays = false,
-           .touches = false,
-           .constrains = true},
-          {.name = "tendon that rubs",
-           .add = add_rubbing_tendon,
-           .length_stays = false,
-           .touches = false},
-          {.name = "taper", .add = add_taper, .in_plane = false},
-          {.name = "magnetic", .add = add_magnet, .length_stays = false},
-          {.name = "thermal", .add = add_heat, .in_plane = false},
-          {.name = "disks", .add = add_disks, .length_stays = false},
-          {.name = "rest curvature", .add = add_rest_curvature, .in_plane = false},
+          {.name = "tendon", .add = add_wound_tendon, .in_plane = false},
+          {.name = "tendon of given length", .add = add_displaced_tendon, .constrains = true},
+          {.name = "tendon that rubs", .add = add_rubbing_tendon},
+          {.name = "taper", .add = add_taper},
+          {.name = "magnetic", .add = add_magnet},
+          {.name = "thermal", .add = add_heat},
+          {.name = "disks", .add = add_disks},
+          {.name = "rest curvature", .add = add_rest_curvature},
           {.name = "feed", .add = add_feed},
           {.name = "sprung base", .add = add_sprung_base, .at_base = true},
           {.name = "sprung base that rubs", .add = add_rubbing_base, .at_base = true}};
@@ -198,8 +191,7 @@ Scene rod_for_pairs(bool moves) {
 }
 
 bool may_be_combined(const PairedEffect& a, const PairedEffect& b) {
-  const auto fed = [](const PairedEffect& e) { return std::string(e.name) == "feed"; };
-  return !(fed(a) && !b.length_stays) && !(fed(b) && !a.length_stays) && !(a.at_base && b.at_base);
+  return !(a.at_base && b.at_base);
 }
 
 }  // namespace cprsim

@@ -234,20 +234,22 @@ TEST_P(PairsOfEffects, EndInQuasiStaticsWhereStaticsIs) {
   std::printf("%d pairs, quasi-statics ends within %.1e of statics\n", pairs, worst);
 }
 
-// Listed where a rod does not reach itself it changes nothing, whatever else there is. Collocation
-// cuts rods that may touch in other places: it is compared where that is all, at rest.
+// Listed where a rod does not reach itself it changes nothing, whatever else there is, but what
+// collocation errs by: it cuts rods that may touch in other places.
 TEST_P(PairsOfEffects, AreNotDisturbedBySelfContactWithoutATouch) {
   for (int i = 0; i < static_cast<int>(effects_.size()); ++i) {
     const PairedEffect& effect = effects_[static_cast<std::size_t>(i)];
-    if (!effect.touches || (effect.moving && !moving())) continue;
+    if (effect.moving && !moving()) continue;
     for (const Method method : kEveryMethod) {
       const bool recut = method == Method::kCollocation;
-      if (recut && moving()) continue;
       Scene scene = rod_for_pairs(moving());
-      switch_on(scene, {Effect::kSelfContact});
       effect.add(scene, 1);
-      EXPECT_LT((solve(coarsely(scene, method)) - answer(method, {i, 1})).norm(),
-                recut ? 1e-8 : 1e-9)
+      scene = coarsely(scene, method);
+      // in longer steps a rod moves farther than the search for contacts looks, which halves them
+      if (recut) scene.solver.step = 0.005;
+      const Answer alone = solve(scene);
+      switch_on(scene, {Effect::kSelfContact});
+      EXPECT_LT((solve(scene) - alone).norm(), recut ? 1e-7 : 1e-9)
           << effect.name << " by " << method_name(method);
     }
   }
@@ -293,7 +295,6 @@ TEST_P(PairsOfEffects, KeepTheLawsOfContact) {
     double alone = 0;
     for (int i = -1; i < static_cast<int>(effects_.size()); ++i) {
       const auto at = static_cast<std::size_t>(std::max(i, 0));
-      if (i >= 0 && !effects_[at].touches) continue;
       if (i >= 0 && !moving() && (effects_[at].moving || effects_[at].name == std::string("disks")))
         continue;
       SCOPED_TRACE(i < 0 ? "alone" : effects_[at].name);
@@ -315,7 +316,9 @@ TEST_P(PairsOfEffects, KeepTheLawsOfContact) {
       if (i < 0) alone = forces[0];
       EXPECT_GT(forces[0], 0.02);
       // where a tip sticks and slips, two methods may do so in unlike steps of the solver
-      const double unlike = friction > 0 ? 2e-6 : 1e-7;
+      const bool rubs = i >= 0 && moving() && effects_[at].name == std::string("tendon that rubs");
+      // one method's search for contacts halves a step, another's does not
+      const double unlike = rubs ? 5e-3 : friction > 0 ? 2e-6 : 1e-7;
       EXPECT_NEAR(forces[1], forces[0], unlike);
       EXPECT_NEAR(forces[2], forces[0], unlike);
       if (i < 0) continue;

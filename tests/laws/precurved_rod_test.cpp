@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/so3.h"
+#include "tests/support/methods.h"
 #include "tests/support/robots.h"
 
 namespace cprsim {
@@ -51,6 +52,39 @@ TEST(PrecurvedRod, IsAHelixWithoutLoad) {
     EXPECT_LT((point.position - expected).norm(), 1e-12 * kLength) << "at s = " << point.s;
   }
 }
+
+/// By how far the point of the axis beside the tip goes along it under a force F there, m.
+double spring_travel(Method method, double k, double t, double F) {
+  Scene scene = finely(precurved({0, k, t}, 150), method);
+  if (method == Method::kShooting) scene.solver.points = 150;
+  if (method == Method::kStrain) scene.solver.elements = 12;
+  const double w = std::hypot(k, t), radius = k / (w * w), phi = w * kLength;
+  const Vec3 axis = Vec3(0, k, t) / w, out(-1, 0, 0), around = axis.cross(out);
+  const Vec3 arm = -radius * (std::cos(phi) * out + std::sin(phi) * around), force = F * axis;
+  add_load(scene, 1, force, arm.cross(force));
+  const Equilibrium found(scene, 1e-13), free(precurved({0, k, t}, 150), 1e-13);
+  EXPECT_TRUE(found.report.converged()) << found.report.worst_row;
+  const RodPoint now = found.rod().points.back(), then = free.rod().points.back();
+  return axis.dot(now.position - then.position +
+                  (now.rotation * then.rotation.transpose() - Mat3::Identity()) * arm);
+}
+
+class HelicalSpring : public ::testing::TestWithParam<Method> {};
+
+// An axial force F has the moment F a about a wire wound at the radius a: F a cos(alpha) twists it,
+// F a sin(alpha) bends it, alpha its pitch. Castigliano: F L a^2 (cos^2 / GJ + sin^2 / EI).
+TEST_P(HelicalSpring, HasTheStiffnessOfItsWire) {
+  const double k = 60, t = 25, w = std::hypot(k, t), a = k / (w * w), F = 1e-2;
+  const Vec3 K = stiffness(steel_rod(kLength, 1e-3));
+  const double cosine = k / w, sine = t / w,
+               expected = F * kLength * a * a * (cosine * cosine / K.z() + sine * sine / K.x());
+  ASSERT_GT(w * kLength, 4 * 2 * std::numbers::pi);  // turns
+  const double travel =
+      0.5 * (spring_travel(GetParam(), k, t, F) - spring_travel(GetParam(), k, t, -F));
+  EXPECT_NEAR(travel / expected, 1, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, HelicalSpring, ::testing::ValuesIn(kEveryMethod), test_name);
 
 // M = K (0 - u_rest) at its tip takes the bend out: straight, and L/2 u_rest K u_rest richer.
 TEST(PrecurvedRod, IsStraightenedByTheMomentOfItsRestCurvature) {

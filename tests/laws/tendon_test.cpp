@@ -349,12 +349,33 @@ TEST_P(Tendons, KeepTheOrderOfTheSchemeWhenPulledInByALength) {
   const Snapshot coarse = run(1e-3), fine = run(5e-4), exact = run(6.25e-5);
   EXPECT_GT(exact.tendons[0].tension, 0.1);
   EXPECT_NEAR(exact.tendons[0].displacement, 0.004, 1e-9);
-  EXPECT_LT(imbalance(fine.energy), 1e-2);
+  EXPECT_LT(imbalance(fine.energy), 5e-5);
+  EXPECT_GT(std::log2(imbalance(coarse.energy) / imbalance(fine.energy)), 1.8);
+  std::printf("imbalance %.1e, %.1e\n", imbalance(coarse.energy), imbalance(fine.energy));
   const auto error = [&](const Snapshot& of) {
     return (of.rods[0].points.back().position - exact.rods[0].points.back().position).norm();
   };
   EXPECT_LT(error(fine), 1e-3 * kLength);
   EXPECT_GT(std::log2(error(coarse) / error(fine)), 1.6);
+}
+
+// The books of found tensions close as exactly, too: their work is what the scheme makes of the
+// power.
+TEST_P(Tendons, CountTheWorkOfFoundTensionsAsExactlyAsTheMotion) {
+  const auto run = [](double step) {
+    Scene scene = released(GetParam(), ShapeOfTime::kSmoothstep, step);
+    for (DriveSpec& drive : scene.drives) {
+      drive.quantity = DriveQuantity::kDisplacement;
+      drive.profile.terms[0].from = 0.006;
+      drive.profile.terms[0].to = 0.004;
+    }
+    scene.solver.scheme = SchemeKind::kEsdirk43;
+    return imbalance(unwound(scene).energy);
+  };
+  const double coarse = run(2e-3), fine = run(1e-3);
+  std::printf("imbalance %.1e, %.1e\n", coarse, fine);
+  EXPECT_LT(fine, 1e-5);
+  EXPECT_GT(std::log2(coarse / fine), 2);
 }
 
 // A jump of tension excites what no step resolves, which the scheme takes away; the rest stays

@@ -272,11 +272,13 @@ TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
   LoadOptions lax;
   lax.lax = true;
   EXPECT_TRUE(load_text(text, lax).scene);
-  EXPECT_EQ(error_codes(load_text(scene_text("<cprsim:tendon name='t' rod='leg'><parallel "
-                                             "radius='0.01' angle='0'/></cprsim:tendon>"
-                                             "<cprsim:drive rod='leg' quantity='length'>"
-                                             "<constant value='0.4'/></cprsim:drive>"),
-                                  lax)),
+  EXPECT_EQ(error_codes(load_text(
+                scene_text("<cprsim:rod name='other' class='steel'><base attached_to='base' "
+                           "joint='fixed'/><length>0.4</length></cprsim:rod><cprsim:tie name='t' "
+                           "rod='leg' other='other'><s>1</s></cprsim:tie>"
+                           "<cprsim:drive rod='leg' quantity='length'><constant value='0.4'/>"
+                           "</cprsim:drive>"),
+                lax)),
             std::vector<std::string>{"E520"});
 }
 

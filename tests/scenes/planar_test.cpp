@@ -34,6 +34,18 @@ TEST(PlanarScene, TakesEveryPlaneThatHoldsAll) {
   EXPECT_EQ(error_codes(load_text(planar_text("0 1"))), std::vector<std::string>{"E305"});
 }
 
+// What is bent at rest, or by heat, bends in the plane or leaves it.
+TEST(PlanarScene, TakesRodsThatBendInThePlane) {
+  const std::string bent =
+      "<cprsim:rod name='bent' class='steel'><base attached_to='base' joint='fixed'/>"
+      "<length>0.2</length><rest><curvature>0 2 0</curvature></rest></cprsim:rod>";
+  EXPECT_TRUE(load_text(planar_text("0 1 0", bent)).scene);
+  const LoadResult across = load_text(planar_text("1 0 0", bent));
+  EXPECT_EQ(error_codes(across), std::vector<std::string>{"E511"});
+  EXPECT_NE(across.diagnostics.back().message.find("bent at rest, out of the plane"),
+            std::string::npos);
+}
+
 TEST(PlanarScene, NamesWhatLeavesThePlane) {
   const LoadResult result = load_text(
       planar_text("0 1 0", "<cprsim:load at=\"leg::tip\"><force>0 1 0</force></cprsim:load>"));

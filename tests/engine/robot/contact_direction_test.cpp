@@ -3,6 +3,8 @@
 // vanishes (see newton_direction_test.cpp), and their elimination.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "engine/rod/contact.h"
 #include "tests/engine/robot/direction_error.h"
 #include "tests/engine/robot/sample_scenes.h"
@@ -75,15 +77,18 @@ void touch(Robot& robot, const std::vector<Surface>& surfaces, Grip grip) {
 
 double slope_error(Grip grip, bool dynamic, double h, unsigned seed,
                    const ShapeSpec& shape = ball(), const MeshDistance* mesh = nullptr,
-                   Method method = Method::kShooting) {
+                   Method method = Method::kShooting,
+                   const std::function<void(Scene&, Robot*)>& change = {}) {
   const std::vector<Surface> surfaces{{&shape, {Mat3::Identity(), {0.9, 0.7, 1.2}}, mesh}};
   Scene scene = chain_of_rods(EndJoint::kRevolute, EndJoint::kUniversal);
+  if (change) change(scene, nullptr);
   for (Effect e : {Effect::kGravity, Effect::kExtension, Effect::kRotaryInertia})
     scene.effects.set(e, true);
   if (method != Method::kShooting) cut_for_contact(scene, method);
   Numbers numbers(seed);
   Robot robot = build_robot(scene);
   touch(robot, surfaces, grip);
+  if (change) change(scene, &robot);
   Equations equations(robot, 1e-9);
   equations.set_instant(0, true, StageRates{});
   StageRates rates;
@@ -125,6 +130,52 @@ TEST(ContactDirection, IsExactByEveryMethod) {
           EXPECT_LT(slope_error(grip, dynamic, 0.01, seed, ball(), nullptr, method),
                     kSlopeTolerance)
               << static_cast<int>(method) << ", " << static_cast<int>(grip);
+}
+
+/// A tendon that rubs and one whose tension is found on the rod that touches.
+void pull(Scene& scene, bool displaced) {
+  scene.effects.set(Effect::kTendonFriction, true);
+  for (const bool given : {true, false}) {
+    TendonSpec tendon;
+    tendon.name = given ? "given" : "found";
+    tendon.rod = 1;
+    tendon.route = TendonRoute::kHelical;
+    tendon.radius = 0.03;
+    tendon.angle = given ? 0.4 : 2;
+    tendon.turns = 0.3;
+    tendon.friction = given ? 0.4 : 0;
+    DriveSpec drive;
+    drive.tendon = static_cast<int>(scene.tendons.size());
+    drive.quantity = given || !displaced ? DriveQuantity::kTension : DriveQuantity::kDisplacement;
+    ProfileTerm value;
+    value.value = given ? 0.7 : 0.01;
+    drive.profile.terms.push_back(value);
+    scene.drives.push_back(drive);
+    scene.tendons.push_back(tendon);
+  }
+}
+
+// The unknowns of tendons and of contacts stand in the same equations, whoever holds the forces.
+TEST(ContactDirection, IsExactWhereTendonsAskForTensions) {
+  for (Method method : {Method::kShooting, Method::kStrain, Method::kCollocation})
+    for (const bool displaced : {false, true})
+      for (const bool shared : {false, true}) {
+        if (method != Method::kShooting && !shared) continue;
+        const auto change = [&](Scene& scene, Robot* robot) {
+          if (!robot) {
+            pull(scene, displaced);
+            return;
+          }
+          robot->rods_meet = shared;
+          for (RodContact& contact : robot->rods[1].model->touching()->contacts())
+            contact.role = shared ? ContactRole::kShared : ContactRole::kOwn;
+        };
+        for (Grip grip : {Grip::kSmooth, Grip::kSlip})
+          for (bool dynamic : {false, true})
+            EXPECT_LT(slope_error(grip, dynamic, 0.01, 1, ball(), nullptr, method, change),
+                      kSlopeTolerance)
+                << static_cast<int>(method) << displaced << shared << dynamic;
+      }
 }
 
 // Contacts and segments' starts recombine the same columns.

@@ -34,6 +34,7 @@ struct Case {
 /// Everything a kernel is given: numbers near 1, nothing zero, residuals far from zero.
 struct Cell {
   PlanarModel model;
+  std::vector<PlanarSection> sections;
   std::vector<PlanarStage> stages;
   PlanarNode start{};
   PlanarKernel kernel{};
@@ -115,6 +116,8 @@ Cell make_cell(const Case& c, unsigned seed) {
   cell.model.C_v[1] = 0.09;
   cell.model.k = c.inertia ? 2.5 : 0;
   cell.model.k_J = c.rotary ? 0.7 : 0;
+  cell.sections.assign(static_cast<std::size_t>(table.stages), cell.model);
+  cell.model.sections = cell.sections.data();
   cell.start = node_of(numbers.vec6());
   cell.stages.assign(static_cast<std::size_t>(table.stages), PlanarStage{});
   for (PlanarStage& s : cell.stages) {
@@ -207,6 +210,12 @@ TEST(PlanarCell, ColumnsAreDerivativesOfTheEvaluation) {
     for (int columns : {kPlanarNarrow, kPlanarWide}) {
       SCOPED_TRACE(c.name() + ", " + std::to_string(columns) + " columns");
       Cell cell = make_cell(c, 7);
+      double more = 1;
+      for (PlanarSection& section : cell.sections) {
+        for (double* of : {&section.C_b, section.C_v, section.C_v + 1, &section.k, &section.k_J})
+          *of *= more;
+        more += 0.2;
+      }
       cell.evaluate();
       const RowMatX Y0 = start_columns(columns);
       const Linearized lin = linearize(cell, Y0);

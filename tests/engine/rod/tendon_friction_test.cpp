@@ -76,7 +76,8 @@ double rate_error(RodTendons& tendons, const Strains& at, const std::vector<Vec6
       (gaps(tendons, beside(at, step, direction)) - gaps(tendons, beside(at, -step, direction))) /
       (2 * step);
   gaps(tendons, at);
-  const VecX rates = tendons.gap_rates(direction);
+  VecX rates(tendons.unknowns());
+  tendons.gap_rates(direction, rates);
   return (rates - difference).cwiseAbs().maxCoeff() / rates.cwiseAbs().maxCoeff();
 }
 
@@ -93,13 +94,13 @@ std::vector<Vec6> some_direction() {
 
 TEST(TendonFriction, HasExactDerivativesWhereTendonsSlip) {
   RodTendons tendons = winding_tendons();
-  tendons.set({{5, false}, {7, false}});
+  tendons.set({{5, false}, {7, false}}, kLength);
   EXPECT_LT(rate_error(tendons, wavy(0.3), some_direction(), 1e-6), 1e-8);
 }
 
 TEST(TendonFriction, HasExactDerivativesWhereTendonsStick) {
   RodTendons tendons = winding_tendons();
-  tendons.set({{5, false}, {7, false}});
+  tendons.set({{5, false}, {7, false}}, kLength);
   const Strains at = wavy(0.3);
   gaps(tendons, at);
   tendons.accept();
@@ -111,10 +112,48 @@ TEST(TendonFriction, HasExactDerivativesWhereTendonsStick) {
   EXPECT_LT(rate_error(tendons, inside, some_direction(), 1e-8), 1e-5);
 }
 
+// A rod of another length has the tendons of one that was made with it, whatever it was before.
+TEST(TendonFriction, KnowsRodsThatGrow) {
+  RodTendons grown = winding_tendons();
+  const Strains at = wavy(0.3);
+  VecX first;
+  for (const double length : {kLength, 1.3 * kLength, 0.7 * kLength, kLength}) {
+    grown.set({{5, false}, {7, true}}, length);
+    const VecX now = gaps(grown, at);
+    if (length == kLength && first.size() > 0) {
+      EXPECT_EQ(now, first);
+    }
+    if (first.size() == 0) first = now;
+    EXPECT_LT(rate_error(grown, at, some_direction(), 1e-6), 1e-8);
+  }
+}
+
+// What the unloaded rod's tendons are longer by on a longer rod.
+TEST(TendonFriction, TakesTautTendonInAsARodIsFed) {
+  RodTendons tendons = winding_tendons();
+  const auto unloaded = [&](double length) {
+    tendons.set({{5, false}, {7, false}}, length);
+    for (std::size_t i = 0; i < gauss_sections().size(); ++i)
+      tendons.evaluate(i, Vec3::Zero(), Vec3::UnitZ());
+    double energy = 0;
+    const std::vector<TendonSample> now = tendons.observe();
+    for (const TendonSample& tendon : now)
+      EXPECT_NEAR(tendon.displacement, 0, 1e-15);
+    // of the helix and of the polygon that ends at 0.75
+    energy += 5 * std::hypot(length, 2 * std::numbers::pi * 0.7 * 0.02);
+    const double a = std::hypot(0.5 * length, std::hypot(0.02, 0.02)),
+                 b = 0.5 * std::hypot(0.5 * length, std::hypot(0.01, 0.03));
+    return energy + 7 * (a + b);
+  };
+  const double h = 1e-5, slope = (unloaded(kLength + h) - unloaded(kLength - h)) / (2 * h);
+  unloaded(kLength);
+  EXPECT_NEAR(tendons.feed_power(), slope, 1e-8);
+}
+
 // Tensions by their unknowns, as Newton's method takes them.
 TEST(TendonFriction, ChangesTensionsAsItsUnknownsSay) {
   RodTendons tendons = winding_tendons();
-  tendons.set({{5, false}, {7, false}});
+  tendons.set({{5, false}, {7, false}}, kLength);
   const Strains at = wavy(0.1);
   gaps(tendons, at);
   VecX x = VecX::LinSpaced(tendons.unknowns(), 0.1, -0.05);
@@ -141,7 +180,7 @@ TEST(TendonFriction, ChangesTensionsAsItsUnknownsSay) {
 // Taken back within a step nothing has happened; only a step that is over is remembered.
 TEST(TendonFriction, RemembersStepsAlone) {
   RodTendons tendons = winding_tendons();
-  tendons.set({{5, false}, {7, false}});
+  tendons.set({{5, false}, {7, false}}, kLength);
   const Strains at = wavy(0.3), away = wavy(0.5);
   gaps(tendons, at);
   tendons.accept();
