@@ -285,6 +285,12 @@ void RodTendons::visit(Archive& archive) {
   archive.doubles(x_);
   archive.doubles(stretch_);
   archive.doubles(directions_);
+  // what they pulled with: a power of a step's begin is made of it
+  for (TendonSection& section : sections_)
+    for (int i = 0; i < 3; ++i) {
+      archive(section.moment[i]);
+      archive(section.force[i]);
+    }
   for (Friction& friction : frictions_)
     friction.law.visit(archive);
   spread_tensions();
