@@ -2,6 +2,7 @@
 // How a scene will be stepped, and the numbers about its rods that people want to see before a run.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "engine/model/scene.h"
@@ -17,6 +18,9 @@ struct StepPlan {
   bool adaptive = false;
   double step = 0;       ///< fixed step, or the first one
   double tolerance = 0;  ///< local error per step relative to the longest rod
+  /// Of steps that adapt. Where hardly anything moves they grow as fast as they may, whatever is
+  /// asked of them: two runs for different errors would be the same run.
+  double longest = std::numeric_limits<double>::infinity();
 };
 
 StepPlan plan_steps(const Scene& scene);

@@ -16,6 +16,8 @@ SchemeKind scheme_for(const Scene& scene) {
                                                             : SchemeKind::kEsdirk32;
 }
 
+constexpr double kHighestOrder = 4;  // of what is taken where an accuracy is asked for
+
 }  // namespace
 
 StepPlan plan_steps(const Scene& scene) {
@@ -31,6 +33,7 @@ StepPlan plan_steps(const Scene& scene) {
   if (spec.accuracy && !spec.tolerance) {
     // local errors add up: a tenth of what is asked for
     plan.tolerance = 0.1 * *spec.accuracy / longest_rod(scene);
+    plan.longest = scene.simulation.duration * std::pow(plan.tolerance, 1 / kHighestOrder);
   }
   return plan;
 }
@@ -62,7 +65,7 @@ double controlled_step(const StepPlan& plan, double step, double error, double l
       last_error > 0 ? plan.tolerance / std::max(last_error, 1e-14) : now_ratio;
   const double factor = 0.9 * std::pow(now_ratio, 0.7 / k) * std::pow(old_ratio, -0.4 / k) *
                         std::pow(now_ratio, 0.3 / k);
-  return step * std::clamp(factor, 0.2, 4.0);
+  return std::min(plan.longest, step * std::clamp(factor, 0.2, 4.0));
 }
 
 void visit(RunStatistics& s, Archive& archive) {

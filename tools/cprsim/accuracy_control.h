@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// <accuracy>: an error is asked for, and what the run's own error is has to be found out.
-// The run is compared with a looser one, its pilot, for which errors of 10 times the size are
-// asked: with errors proportional to a^kappa, kappa >= 2/3 for every scheme that adapts,
-//   d = max |x_pilot - x|,   e <= d / (10^kappa - 1) < d / 3                                (1)
-// (with r instead of 10 where errors of r times the size were asked of the pilot).
-// Where (1) exceeds what is asked for, a smaller error is asked for in secret and the run made
-// again, with the last one as its pilot.
+// <accuracy>: an error is asked for, and what the run's own error is has to be found out. The scene
+// is run for larger errors first, each run with errors that ought to be r times smaller than the
+// last one's. With errors e proportional to r^-kappa
+//   d = max |x_last - x|,   e = d / (r^kappa - 1).                                            (1)
+// Two runs know nothing of kappa: it is taken for 2/3, what the least able of the schemes that adapt
+// has. Of three runs the quotient of both distances tells it,
+//   d_1 / d_2 = r_2^kappa (r_1^kappa - 1) / (r_2^kappa - 1).                                  (2)
+// Two pilots, for errors 100 and 10 times as large as asked for, tell what a run has to aim at to get
+// there, and no farther: what is more accurate is not what was asked for, but costs more. Where (1)
+// still exceeds what is asked for, the run is made again with a smaller aim.
 #pragma once
 
 #include <functional>
@@ -13,41 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/model/scene.h"
-#include "engine/run/observe.h"
-#include "tools/sinks/sink.h"
+#include "tools/cprsim/answer_track.h"
+#include "tools/cprsim/resolution.h"
 
 namespace cprsim {
 
-/// What an accuracy is about, at evenly spaced instants: where links are, and rods at eighths of
-/// their length, or the channels that the scene names. What is interpolated between nodes counts:
-/// it is what a scene gets to see.
-class AnswerTrack : public Sink {
- public:
-  explicit AnswerTrack(const Scene& scene);
-
-  void begin(const Snapshot& start) override;
-  void step(const Snapshot& before, const Snapshot& now) override;
-
-  void finish() override {}
-
-  std::vector<WrittenFile> files() const override { return {}; }
-
-  /// Largest distance at instants that both have reached: in m, or as AccuracyGoal says.
-  friend double farthest(const AnswerTrack& a, const AnswerTrack& b);
-
- private:
-  void record(const Snapshot& snapshot);
-
-  double end_;
-  std::optional<AccuracyGoal> goal_;
-  std::optional<ChannelReader> reader_;
-  double size_ = 1;                         ///< what is relative is relative to
-  std::vector<std::vector<Vec3>> answers_;  ///< by instant; of a channel (value, 0, 0)
-};
-
-/// (1) from two runs of which the first is made for errors `times` the size, 10 at least.
-double estimated_error(const AnswerTrack& looser, const AnswerTrack& track, double times = 10);
+/// (1) from two runs, the errors of the second being `times` smaller.
+double estimated_error(double distance, double times);
 
 /// Takes away what a scene says of step, tolerance, scheme and resolution; its method stays.
 void free_settings(SolverSpec& solver);
@@ -61,19 +36,11 @@ struct AccuracyReport {
   double asked = 0;
   double estimate = 0;    ///< (1)
   std::string unit;       ///< of both, with what they are about: "m", "of the longest rod"
-  int runs = 0;           ///< all told, pilot and last one included
+  int runs = 0;           ///< all told, pilots and last one included
   long evaluations = 0;   ///< section evaluations of those before the last
   std::string held_back;  ///< what the scene fixes and accuracy therefore does not choose
 
   bool reached() const { return estimate <= asked; }
-};
-
-/// What a rod is cut into.
-struct Resolution {
-  Method method = Method::kShooting;
-  int elements = 0, order = 0;
-
-  bool operator==(const Resolution&) const = default;
 };
 
 class AccuracyControl {
@@ -83,8 +50,9 @@ class AccuracyControl {
   /// The scene asks for an accuracy.
   bool asked() const { return asked_.has_value(); }
 
-  /// Makes the pilot. @param stop asked before every step
-  void fly_pilot(const std::function<bool()>& stop);
+  /// Makes the pilots and decides what is to be run next.
+  /// @param stop asked before every step
+  void fly_pilots(const std::function<bool()>& stop);
 
   /// The scene to be run next.
   const Scene& scene() const { return scene_; }
@@ -95,16 +63,38 @@ class AccuracyControl {
   /// After a run that got to its end: whether another one is needed, which scene() then is.
   bool refine(long evaluations);
 
+  /// After a run that failed: likewise. Rods that the program cut may be too coarse for any
+  /// solution, and a smaller error than that of the last run that got to its end may be out of
+  /// reach of round-off.
+  bool retry(long evaluations);
+
   const AccuracyReport& report() const { return report_; }
 
  private:
-  void cut_finer(const std::vector<Resolution>& last);
+  /// A run that got to its end.
+  struct Level {
+    Scene scene;
+    std::vector<Resolution> resolution;
+    double times = 1;     ///< smaller than the last one's its errors ought to be
+    double distance = 0;  ///< from the last one
+    AnswerTrack track;
+  };
+
+  void aim(double factor);
+  void begin(Scene scene);
+  double estimate() const;
+  bool fly(Scene scene, const std::function<bool()>& stop);
+  void land(AnswerTrack track);
 
   Scene scene_;
   std::optional<double> asked_;
   bool residual_is_ours_ = false;  ///< the scene does not say how far equations are solved
-  double times_ = 10;              ///< the error of the last run that was asked of its pilot
-  std::optional<AnswerTrack> pilot_, track_;
+  std::vector<Resolution> resolution_;
+  double times_ = 1;           ///< Level::times of scene_
+  std::vector<Level> levels_;  ///< coarse to fine
+  std::optional<AnswerTrack> track_;
+  int failures_ = 0;
+  bool went_back_ = false;
   AccuracyReport report_;
 };
 

@@ -63,7 +63,8 @@ void RealTimeSearch::choose(const Trial& trial) {
     if (other.accuracy >= kApart * trial.accuracy &&
         (looser == nullptr || other.accuracy < looser->accuracy))
       looser = &other;
-  if (looser != nullptr) report_.estimate = estimated_error(looser->track, trial.track);
+  if (looser != nullptr)
+    report_.estimate = estimated_error(farthest(looser->track, trial.track), kApart);
 }
 
 void RealTimeSearch::run(const std::function<bool()>& stop) {

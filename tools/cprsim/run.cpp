@@ -277,16 +277,18 @@ int run_to_accuracy(Run& run) {
     run.console.warn(
         "no checkpoints are written of a run that is held to an <accuracy>: its error is found out "
         "at its end, and it may begin anew");
-  if (control.asked()) control.fly_pilot([&] { return must_stop(run); });
+  if (control.asked()) control.fly_pilots([&] { return must_stop(run); });
   for (bool again = true; again;) {
     const auto simulation = build_simulation(control.scene());
     if (control.asked()) run.track = &control.track();
     run_scene(run, *simulation);
     const bool judge = control.asked() && run.report.end == RunEnd::kDone;
-    again = judge && control.refine(simulation->statistics().section_evaluations);
+    const long work = simulation->statistics().section_evaluations;
+    again = judge ? control.refine(work)
+                  : control.asked() && run.report.end == RunEnd::kFailed && control.retry(work);
     if (judge) run.report.accuracy = control.report();
     if (again)
-      run.report.end = RunEnd::kRunning;
+      run.report.begin_anew();
     else
       judge_stability(run, *simulation);
   }

@@ -63,6 +63,14 @@ struct RunReport {
   std::optional<PhaseClock::Sums> phases;  ///< with --profile
   Timings timings;
 
+  /// Another run takes the place of the one told of so far.
+  void begin_anew() {
+    end = RunEnd::kRunning;
+    failure.clear();
+    failure_code = "";
+    likely_causes.clear();
+  }
+
   bool interrupted() const { return end == RunEnd::kInterrupted; }
 
   /// Seconds simulated per second of wall time spent on it.

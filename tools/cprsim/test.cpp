@@ -72,7 +72,7 @@ void judge_rejection(const LoadedScene& loaded, TestCase& test) {
 QuietRun run_as_asked(const Scene& scene, std::vector<ExpectResult>& results) {
   const auto stop = [] { return stop_signal() != 0; };
   AccuracyControl control(scene);
-  if (control.asked()) control.fly_pilot(stop);
+  if (control.asked()) control.fly_pilots(stop);
   while (true) {
     Expectations expectations(scene);
     const Onlooker judge = onlooker(expectations), track = onlooker(control.track());
@@ -86,9 +86,9 @@ QuietRun run_as_asked(const Scene& scene, std::vector<ExpectResult>& results) {
                         }};
     const QuietRun run = run_quietly(control.scene(), control.asked() ? both : judge, stop);
     results = expectations.results(run.status == RunStatus::kDone);
-    if (!control.asked() || run.status != RunStatus::kDone ||
-        !control.refine(run.statistics.section_evaluations))
-      return run;
+    if (!control.asked() || run.status == RunStatus::kRunning) return run;
+    const long work = run.statistics.section_evaluations;
+    if (!(run.status == RunStatus::kDone ? control.refine(work) : control.retry(work))) return run;
   }
 }
 
