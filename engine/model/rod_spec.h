@@ -111,12 +111,19 @@ struct RodEndSpec {
   Place place;
 };
 
+/// How finely a rod is cut.
+struct RodCut {
+  int elements = 0;  ///< cells of shooting, elements of the other methods
+  int order = 0;     ///< highest degree of a strain basis
+};
+
 struct RodSpec {
   std::string name;  ///< scoped
   Place place;
   RodEndSpec base, tip;
   double length = 0;             ///< m, unloaded; a length drive replaces it
   std::optional<Method> method;  ///< where it is not the scene's
+  std::optional<RodCut> cut;     ///< what a tool chose for it, before what the solver says
   SectionSpec section;
   /// Where sections vary: two or more by ascending s, of one shape between different s; linear
   /// between them, a step where two have the same s. `section` is the first then.

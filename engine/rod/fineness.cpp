@@ -81,18 +81,23 @@ bool fineness_given(Method method, const SolverSpec& solver) {
 // depends on how far a cell turns: a rod wound up by `turn` > 1 rad gets as many times more.
 // Between its ties a rod bends like one of that length.
 int shooting_cells(const RodPlan& plan) {
+  if (plan.spec->cut) return plan.spec->cut->elements;
   const SolverSpec& solver = *plan.solver;
   if (solver.points) return *solver.points;
   const bool best = solver.integrator.value_or(kDefaultIntegrator) == ArcIntegrator::kGauss6;
   const double span = plan.tied ? longest_span(plan.stations) : 1;
   double cells = (best ? 6 : 12) * std::sqrt(span);
-  if (best && solver.accuracy)
-    cells = 6 * std::pow(3.4e-7 * span * plan.spec->length / *solver.accuracy, 1.0 / 6);
-  cells = std::clamp(std::ceil(cells), plan.tied ? 2.0 : 3.0, 60.0) / span;
-  return static_cast<int>(std::clamp(std::ceil(cells * std::max(1.0, turn_of(plan))), 3.0, 600.0));
+  const bool asked = best && solver.accuracy;
+  if (asked) cells = 6 * std::pow(3.4e-7 * span * plan.spec->length / *solver.accuracy, 1.0 / 6);
+  // an accuracy that is asked for is checked: one cell may do
+  const double least = asked ? 1 : 3;
+  cells = std::clamp(std::ceil(cells), plan.tied ? std::min(2.0, least) : least, 60.0) / span;
+  return static_cast<int>(
+      std::clamp(std::ceil(cells * std::max(1.0, turn_of(plan))), least, 600.0));
 }
 
 int strain_order(const RodPlan& plan) {
+  if (plan.spec->cut) return plan.spec->cut->order;
   const SolverSpec& solver = *plan.solver;
   if (solver.order) return *solver.order;
   if (!solver.accuracy) return plan.touches ? kTouchingOrder : 6;
@@ -101,6 +106,7 @@ int strain_order(const RodPlan& plan) {
 }
 
 int strain_elements(const RodPlan& plan) {
+  if (plan.spec->cut) return plan.spec->cut->elements;
   const int wound = static_cast<int>(std::min(std::ceil(turn_of(plan) / kTurnPerElement), 100.0));
   return plan.solver->elements.value_or(std::max(plan.touches ? kTouchingElements : 1, wound));
 }
@@ -110,6 +116,7 @@ int collocation_degree(const RodPlan& plan) {
 }
 
 int collocation_elements(const RodPlan& plan) {
+  if (plan.spec->cut) return plan.spec->cut->elements;
   const SolverSpec& solver = *plan.solver;
   if (solver.elements) return *solver.elements;
   const int degree = collocation_degree(plan);

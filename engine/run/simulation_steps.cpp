@@ -201,8 +201,18 @@ void Simulation::Parts::step_dynamic() {
   }
 }
 
+namespace {
+
+/// Of this step, after t: where one was halved, or a break lay between, the next ones come back to
+/// the instants that a scene records, between which positions are not known but joined by lines.
+double next_multiple(double t, double step) {
+  return step * (std::floor(t / step + kSliver) + 1);
+}
+
+}  // namespace
+
 void Simulation::Parts::step_quasistatic() {
-  const double stop = next_break();
+  const double stop = std::min(next_break(), next_multiple(t, plan.step));
   double target = plan.step;
   const RobotUnknowns start = equations.unknowns();
   const double from = t, power = ledger.drive_power(t, false);

@@ -49,6 +49,32 @@ TEST(QuasiStatics, StopsAtAFold) {
   EXPECT_LT(farthest, 5) << "no jump, of legs of 120";
 }
 
+// A load that turns at 0.013 s is met there; the steps after that come back to those of the scene.
+TEST(QuasiStatics, KeepsToItsInstants) {
+  LoadResult loaded = load_scene(CPRSIM_SOURCE_DIR "/scenes/paths/lees_frame.xml");
+  ASSERT_TRUE(loaded.scene);
+  Scene& scene = *loaded.scene;
+  scene.simulation.mode = Mode::kQuasistatic;
+  scene.simulation.duration = 0.04;
+  scene.solver.step = 0.01;
+  scene.loads[0].force = {0, 0, -100};
+  scene.loads[0].has_profile = true;
+  ProfileTerm late = ramp(0, 1);
+  late.start = 0.013;
+  scene.loads[0].profile.terms = {late};
+  Simulation simulation(scene);
+  simulation.start();
+  std::vector<double> times;
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    times.push_back(simulation.time());
+  }
+  const std::vector<double> expected{0.01, 0.013, 0.02, 0.03, 0.04};
+  ASSERT_EQ(times.size(), expected.size());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(times[i], expected[i], 1e-12);
+}
+
 // N13: a crank of 0.1 m and a rod of 0.3 m, whose slider is driven towards 0.45 m: dead centre is
 // at 0.4 m.
 TEST(DeadCentre, StopsTheRunAndIsNamed) {

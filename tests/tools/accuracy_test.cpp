@@ -47,6 +47,35 @@ TEST_F(Accuracy, IsKeptByEquilibria) {
   }
 }
 
+// Ten times more accurate costs more, and less is not run for: one cell of a straight leg will do.
+TEST_F(Accuracy, IsNotPaidForUnasked) {
+  const std::string robot = shipped("scenes/robots/csg_published.xml") + " --no-video -q ";
+  long last = 0;
+  for (const char* asked : {"1e-2", "1e-4", "1e-6", "1e-8"}) {
+    ASSERT_LE(run("run " + robot + "--accuracy " + asked + " -o asked").code, 1);
+    const Json report = json("asked/run.json");
+    const long work = report["statistics"]["section_evaluations"];
+    EXPECT_TRUE(report["accuracy"]["reached"]) << asked;
+    EXPECT_GT(work, last) << asked;
+    EXPECT_LT(report["accuracy"]["section_evaluations_before"], 4 * work) << asked;
+    last = work;
+  }
+}
+
+// A coil of 26 radians and four straight legs: what the coil takes is not what they take.
+TEST_F(Accuracy, CutsEveryRodForItself) {
+  ASSERT_LE(run("run " + shipped("scenes/robots/legs_that_differ.xml") +
+                " --no-video -q --accuracy 1e-4 -o asked")
+                .code,
+            1);
+  int least = 1000, most = 0;
+  for (const Json& rod : json("asked/run.json")["method"]["rods"]) {
+    least = std::min(least, rod["elements"].get<int>());
+    most = std::max(most, rod["elements"].get<int>());
+  }
+  EXPECT_GT(most, 4 * least);
+}
+
 // Its ends are held: what there is to be wrong is between them.
 TEST_F(Accuracy, CountsBetweenTheEndsOfARod) {
   constexpr double kDepth = -0.19492431137557384;  // scenes/rods/arch.xml

@@ -17,8 +17,10 @@ constexpr double kLeastOrder = 2. / 3;  // kappa of (1)
 constexpr double kLikelyOrder = 0.85;   // likewise, to aim by
 constexpr double kAim = 0.5;            // of what is asked for
 constexpr double kSafety = 1.5;         // of kappa that is known from three runs only
+constexpr double kMostGain = 10;        // that a run is believed to be nearer than to the last one
+constexpr double kLeastAim = 0.5, kMostAim = 1e-3;  // of what the last run asked for
 constexpr int kMostRuns = 7;
-constexpr int kMostFailures = 2;
+constexpr int kMostFailures = 5;
 constexpr double kBolder = 64;            // after a failure: twice as many cells
 constexpr double kLeastAccuracy = 1e-12;  // m; what a scene may ask for
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -42,9 +44,8 @@ Scene looser(const Scene& scene) {
 }
 
 /// kappa of (2), by bisection: the quotient grows with it.
-double order_seen(double quotient, double times_1, double times_2) {
-  constexpr double kLeast = 0.3, kMost = 1;
-  double low = kLeast, high = kMost;
+double order_seen(double quotient, double times_1, double times_2, double least) {
+  double low = least, high = 1;
   for (int i = 0; i < 40; ++i) {
     const double kappa = 0.5 * (low + high);
     const double a = std::pow(times_1, kappa), b = std::pow(times_2, kappa);
@@ -84,11 +85,13 @@ std::string fixed_by(const Scene& scene) {
 
 double residual_for(const Scene& scene) {
   constexpr double kShareOfError = 1e-2, kDefault = 1e-9, kLeast = 1e-12;
+  // a rod about to buckle turns a small residual into a large error
+  if (scene.simulation.mode != Mode::kDynamic) return kLeast;
   return std::clamp(kShareOfError * *scene.solver.accuracy / longest_rod(scene), kLeast, kDefault);
 }
 
 double estimated_error(double distance, double times) {
-  return error_by(distance, times, kLeastOrder);
+  return error_by(distance, std::min(times, kLooser), kLeastOrder);
 }
 
 void free_settings(SolverSpec& solver) {
@@ -111,33 +114,39 @@ AccuracyControl::AccuracyControl(const Scene& scene)
   residual_is_ours_ = !scene.solver.residual_tolerance;
 }
 
-/// Makes this the scene to be run next: cut otherwise than what it will be compared with, or the
-/// error along the rods would not be seen.
+/// Makes this the scene to be run next: cut finer than what it will be compared with, by as much
+/// as its error is to be smaller.
 void AccuracyControl::begin(Scene scene) {
   if (residual_is_ours_) scene.solver.residual_tolerance = residual_for(scene);
-  scene_ = std::move(scene);
-  resolution_ = resolution_of(scene_);
   times_ = 1;
   if (!levels_.empty()) {
     const Level& last = levels_.back();
-    times_ = *last.scene.solver.accuracy / *scene_.solver.accuracy;
-    if (resolution_ == last.resolution && !resolution_.empty() && report_.held_back.empty()) {
-      scene_ = cut(scene_, resolution_, times_);
-      resolution_ = resolution_of(scene_);
-    }
-    // nothing else is chosen where nothing moves
-    if (scene_.simulation.mode != Mode::kDynamic && report_.held_back.empty())
-      times_ = times_smaller(last.resolution, resolution_);
+    times_ = *last.scene.solver.accuracy / *scene.solver.accuracy;
+    if (report_.held_back.empty()) scene = cut(std::move(scene), last.resolution, times_);
   }
+  scene_ = std::move(scene);
+  resolution_ = resolution_of(scene_);
+  // where nothing moves, nothing else is chosen
+  if (!levels_.empty() && scene_.simulation.mode != Mode::kDynamic && report_.held_back.empty())
+    times_ = times_smaller(levels_.back().resolution, resolution_);
   track_.emplace(scene_);
 }
 
-/// What scene() is to be after the last run, whose errors are to be made `factor` times as large.
-void AccuracyControl::aim(double factor) {
+/// What scene() is to be after the last run, whose errors are to be made `factor` times as large
+/// and go with this power of what is asked for.
+void AccuracyControl::aim(double factor, double order) {
   Scene scene = levels_.back().scene;
   double& accuracy = *scene.solver.accuracy;
-  accuracy = std::max(kLeastAccuracy, accuracy * std::clamp(factor, 1e-3, 0.5));
+  const double less = std::pow(std::min(factor, kLeastAim), 1 / std::max(order, kLeastOrder));
+  accuracy = std::max(kLeastAccuracy, accuracy * std::max(less, kMostAim));
   begin(std::move(scene));
+}
+
+/// Makes the scene of this run the one to be run next.
+void AccuracyControl::repeat(const Level& level, double estimate) {
+  scene_ = level.scene;
+  track_.emplace(scene_);
+  known_ = estimate;
 }
 
 /// Takes the run that got to its end among the levels.
@@ -176,43 +185,55 @@ void AccuracyControl::fly_pilots(const std::function<bool()>& stop) {
     return;
   }
   const Level& last = levels_.back();
-  if (estimated_error(last.distance, last.times) <= report_.asked) {
-    // it is good enough, and only remains to be run with all its outputs
-    const Scene scene = last.scene;
-    levels_.pop_back();
-    begin(scene);
+  const double error = estimated_error(last.distance, last.times);
+  if (error <= report_.asked) {
+    // one of them is good enough, and only remains to be run with all its outputs
+    const double of_first = last.distance + error;
+    if (of_first <= report_.asked)
+      repeat(levels_.front(), of_first);
+    else
+      repeat(last, error);
     return;
   }
-  aim(kAim * report_.asked / error_by(last.distance, last.times, kLikelyOrder));
+  aim(kAim * report_.asked / error_by(last.distance, last.times, kLikelyOrder), kLikelyOrder);
 }
 
-/// Of the last level.
-double AccuracyControl::estimate() const {
+AccuracyControl::Estimate AccuracyControl::estimate() const {
   const std::size_t n = levels_.size();
-  if (n < 2) return kUnknown;
+  if (n < 2) return {kUnknown, kLikelyOrder};
   const Level& last = levels_[n - 1];
   if (n < 3 || last.distance == 0 || levels_[n - 2].times <= 1 || last.times <= 1)
-    return estimated_error(last.distance, last.times);
+    return {estimated_error(last.distance, last.times), kLikelyOrder};
   const Level& before = levels_[n - 2];
-  const double order = order_seen(before.distance / last.distance, before.times, last.times);
-  return kSafety * error_by(last.distance, last.times, order);
+  // friction along a rod leaves shooting the first of its six orders, drag a motion half of its own
+  const double least = scene_.simulation.mode == Mode::kDynamic ? 1. / 3 : 1. / 6;
+  const double order = order_seen(before.distance / last.distance, before.times, last.times, least);
+  const double error = kSafety * error_by(last.distance, last.times, order);
+  return {std::max(error, last.distance / kMostGain), order};
 }
 
 bool AccuracyControl::refine(long evaluations) {
   ++report_.runs;
+  if (known_) {
+    report_.estimate = *known_;
+    return false;
+  }
   land(std::move(*track_));
-  report_.estimate = estimate();
+  const Estimate estimate = this->estimate();
+  report_.estimate = estimate.error;
   const bool at_the_end = *scene_.solver.accuracy <= kLeastAccuracy;
-  const bool settled = report_.reached() || at_the_end || went_back_ ||
-                       report_.runs >= kMostRuns || !report_.held_back.empty();
+  const bool settled = report_.reached() || at_the_end || went_back_ || report_.runs >= kMostRuns ||
+                       !report_.held_back.empty();
   if (settled) return false;
   report_.evaluations += evaluations;
-  aim(std::isfinite(report_.estimate) ? kAim * report_.asked / report_.estimate : 1 / kLooser);
+  aim(std::isfinite(estimate.error) ? kAim * report_.asked / estimate.error : 1 / kLooser,
+      estimate.order);
   return true;
 }
 
 bool AccuracyControl::retry(long evaluations) {
-  if (!report_.held_back.empty() || went_back_ || failures_++ >= kMostFailures) return false;
+  if (!report_.held_back.empty() || known_ || went_back_ || failures_++ >= kMostFailures)
+    return false;
   ++report_.runs;
   report_.evaluations += evaluations;
   if (levels_.empty()) {

@@ -3,12 +3,14 @@
 // is run for larger errors first, each run with errors that ought to be r times smaller than the
 // last one's. With errors e proportional to r^-kappa
 //   d = max |x_last - x|,   e = d / (r^kappa - 1).                                            (1)
-// Two runs know nothing of kappa: it is taken for 2/3, what the least able of the schemes that adapt
-// has. Of three runs the quotient of both distances tells it,
+// Two runs know nothing of kappa: it is taken for 2/3, what the least able of the schemes that
+// adapt has. Of three runs the quotient of both distances tells it,
 //   d_1 / d_2 = r_2^kappa (r_1^kappa - 1) / (r_2^kappa - 1).                                  (2)
-// Two pilots, for errors 100 and 10 times as large as asked for, tell what a run has to aim at to get
-// there, and no farther: what is more accurate is not what was asked for, but costs more. Where (1)
-// still exceeds what is asked for, the run is made again with a smaller aim.
+// No run is believed to be more than ten times nearer than the one before it. Two pilots, for
+// errors 100 and 10 times as large as asked for, tell what a run has to aim at to get there, and no
+// farther: what is more accurate is not what was asked for, but costs more. The first pilot's error
+// is at most d + e. The coarser pilot that is good enough is run again with all its outputs. Where
+// (1) still exceeds what is asked for, the run is made again with a smaller aim.
 #pragma once
 
 #include <functional>
@@ -80,11 +82,17 @@ class AccuracyControl {
     AnswerTrack track;
   };
 
-  void aim(double factor);
+  struct Estimate {
+    double error = 0;
+    double order = 0;  ///< kappa
+  };
+
+  void aim(double factor, double order);
   void begin(Scene scene);
-  double estimate() const;
+  Estimate estimate() const;  ///< of the last level
   bool fly(Scene scene, const std::function<bool()>& stop);
   void land(AnswerTrack track);
+  void repeat(const Level& level, double estimate);
 
   Scene scene_;
   std::optional<double> asked_;
@@ -93,6 +101,7 @@ class AccuracyControl {
   double times_ = 1;           ///< Level::times of scene_
   std::vector<Level> levels_;  ///< coarse to fine
   std::optional<AnswerTrack> track_;
+  std::optional<double> known_;  ///< estimate of scene_, which a pilot was run for
   int failures_ = 0;
   bool went_back_ = false;
   AccuracyReport report_;

@@ -8,14 +8,24 @@ namespace cprsim {
 
 namespace {
 
-constexpr int kInstants = 200;
+constexpr int kMostInstants = 200;
 constexpr int kPlaces = 8;          // along a rod
 constexpr double kRoundOff = 1e-9;  // of a step: times are sums of rounded steps
+
+/// A quasi-static run knows nothing of what lies between its steps.
+double interval_of(const Scene& scene) {
+  const double duration = scene.simulation.duration;
+  if (scene.simulation.mode == Mode::kStatic) return 1;
+  if (scene.simulation.mode == Mode::kDynamic) return duration / kMostInstants;
+  const double step = scene.solver.step.value_or(scene.max_step_size);
+  return step * std::max(1.0, std::ceil(duration / step / kMostInstants));
+}
 
 }  // namespace
 
 AnswerTrack::AnswerTrack(const Scene& scene)
     : end_(scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration),
+      interval_(interval_of(scene)),
       goal_(scene.accuracy_goal) {
   if (!goal_) return;
   if (!goal_->channels.empty()) reader_.emplace(scene, goal_->channels);
@@ -46,9 +56,9 @@ void AnswerTrack::begin(const Snapshot& start) {
 
 void AnswerTrack::step(const Snapshot& before, const Snapshot& now) {
   const double slack = kRoundOff * (now.time - before.time);
-  for (auto k = answers_.size(); k <= kInstants; ++k) {
-    const double t = end_ * static_cast<double>(k) / kInstants;
-    if (t > now.time + slack) return;
+  for (auto k = answers_.size();; ++k) {
+    const double t = interval_ * static_cast<double>(k);
+    if (t > std::min(now.time, end_) + slack) return;
     record(interpolate(before, now, std::min(t, now.time)));
   }
 }

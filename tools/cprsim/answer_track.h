@@ -12,8 +12,8 @@
 namespace cprsim {
 
 /// What an accuracy is about, at evenly spaced instants: where links are, and rods at eighths of
-/// their length, or the channels that the scene names. What is interpolated between nodes counts:
-/// it is what a scene gets to see.
+/// their length, or the channels that the scene names. What is interpolated between nodes counts,
+/// and in a motion between steps: it is what a scene gets to see.
 class AnswerTrack : public Sink {
  public:
   explicit AnswerTrack(const Scene& scene);
@@ -31,7 +31,7 @@ class AnswerTrack : public Sink {
  private:
   void record(const Snapshot& snapshot);
 
-  double end_;
+  double end_, interval_;  ///< s
   std::optional<AccuracyGoal> goal_;
   std::optional<ChannelReader> reader_;
   double size_ = 1;                         ///< what is relative is relative to

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "tools/cprsim/build_simulation.h"
 
@@ -32,24 +31,15 @@ std::vector<Resolution> resolution_of(const Scene& scene) {
 
 Scene cut(Scene scene, const std::vector<Resolution>& rods, double times) {
   const bool finer = times > 1;
-  const auto pick = [&](std::optional<int>& of_all, int n) {
-    of_all = !of_all ? n : finer ? std::max(*of_all, n) : std::min(*of_all, n);
-  };
-  SolverSpec& solver = scene.solver;
-  solver.points.reset();
-  solver.elements.reset();
-  solver.order.reset();
+  // a degree is a power of ten on what is smooth, and its pieces help where it is not
+  const int degrees = std::max(1, static_cast<int>(std::lround(std::abs(std::log10(times)))));
   for (std::size_t i = 0; i < rods.size(); ++i) {
     const Resolution& rod = rods[i];
-    scene.rods[i].method = rod.method;
     const double wanted = rod.elements * std::pow(times, 1.0 / order_of(rod));
-    const int elements = finer ? std::max(rod.elements + 1, static_cast<int>(std::ceil(wanted)))
-                               : std::max(1, static_cast<int>(wanted));
-    pick(rod.method == Method::kShooting ? solver.points : solver.elements, elements);
-    // a degree is a power of ten on what is smooth, and its pieces help where it is not
-    const int degrees = std::max(1, static_cast<int>(std::lround(std::abs(std::log10(times)))));
-    if (rod.method == Method::kStrain)
-      pick(solver.order, std::max(1, rod.order + (finer ? degrees : -degrees)));
+    scene.rods[i].method = rod.method;
+    scene.rods[i].cut = {finer ? std::max(rod.elements + 1, static_cast<int>(std::ceil(wanted)))
+                               : std::max(1, static_cast<int>(wanted)),
+                         std::max(1, rod.order + (finer ? degrees : -degrees))};
   }
   return scene;
 }

@@ -58,8 +58,8 @@ struct RunReport {
   std::optional<RealTimeReport> real_time;  ///< likewise
   std::vector<Diagnostic> diagnostics;
   std::vector<ExpectResult> expectations;
-  std::vector<WrittenFile> files;    ///< without run.json
-  std::string film_device;           ///< what drew the pictures; empty if nothing did
+  std::vector<WrittenFile> files;          ///< without run.json
+  std::string film_device;                 ///< what drew the pictures; empty if nothing did
   std::optional<PhaseClock::Sums> phases;  ///< with --profile
   Timings timings;
 

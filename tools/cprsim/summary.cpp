@@ -147,7 +147,7 @@ std::string describe(const CheckResult& check) {
 
 std::string describe(const AccuracyReport& accuracy) {
   std::string text = fmt::format(
-      "{:.3g} {} asked for, error about {:.1g} (from the distance to a looser run; {} runs in all)",
+      "{:.3g} {} asked for, error about {:.1g} (from the distance between runs, {} in all)",
       accuracy.asked, accuracy.unit, accuracy.estimate, accuracy.runs);
   if (accuracy.reached()) return text;
   return text + (accuracy.held_back.empty()
