@@ -14,8 +14,7 @@
 #include <vector>
 
 #include "scenes/loader/load.h"
-#include "tools/cprsim/accuracy_control.h"
-#include "tools/cprsim/quiet_run.h"
+#include "tools/cprsim/asked_run.h"
 
 namespace cprsim {
 namespace {
@@ -62,30 +61,20 @@ std::optional<Scene> scene_of(const fs::path& path) {
 
 /// The run that `cprsim run --accuracy` ends with.
 Outcome run_for(Scene scene, double asked, AnswerTrack& track) {
-  const auto never = [] { return false; };
   Outcome outcome;
   outcome.length = longest_rod(scene);
   outcome.asked = asked;
   scene.solver.accuracy = asked;
-  AccuracyControl control(scene);
-  control.fly_pilots(never);
-  for (bool again = true; again;) {
-    const QuietRun run = run_quietly(control.scene(), onlooker(control.track()), never);
-    outcome.evaluations = run.statistics.section_evaluations;
-    if (run.status == RunStatus::kDone) {
-      track = control.track();
-      again = control.refine(outcome.evaluations);
-    } else if (!control.retry(outcome.evaluations)) {
-      outcome.failure = run.failure;
-      return outcome;
-    }
-  }
-  for (const Resolution& rod : resolution_of(control.scene()))
+  const auto look = [&] { return onlooker(track); };
+  const AskedRun all = run_as_asked(scene, look, [] { return false; });
+  outcome.failure = all.last.failure;
+  for (const RodFacts& rod : all.last.facts.rods)
     outcome.pieces = std::max(outcome.pieces, rod.elements);
-  outcome.estimate = control.report().estimate;
-  outcome.reached = control.report().reached();
-  outcome.runs = control.report().runs;
-  outcome.all_evaluations = control.report().evaluations + outcome.evaluations;
+  outcome.estimate = all.accuracy.estimate;
+  outcome.reached = all.accuracy.reached();
+  outcome.runs = all.accuracy.runs;
+  outcome.evaluations = all.last.statistics.section_evaluations;
+  outcome.all_evaluations = all.section_evaluations;
   return outcome;
 }
 
@@ -152,16 +141,22 @@ void write_summary(const std::vector<Outcome>& outcomes, std::ostream& page) {
   }
   if (done == 0) return;
   std::sort(dearer.begin(), dearer.end());
-  char line[640];
-  std::snprintf(
-      line, sizeof line,
-      "Of %zu runs %zu (%.0f %%) end with an error that is at most what was asked for, %zu "
-      "with one more than ten times as large; of the %zu with a larger error %zu say so "
-      "themselves. In %.0f %% the error lies within a factor of 3 below, in %.0f %% of 30. "
-      "To find that out, half of the runs take at most %.1f times the section evaluations "
-      "of their last run alone.\n\n",
-      done, kept, part(kept, done), awful, over, told, part(within_three, done),
-      part(within_thirty, done), dearer[dearer.size() / 2]);
+  char line[320];
+  std::snprintf(line, sizeof line,
+                "Of %zu runs %zu (%.0f %%) end with an error that is at most what was asked for, "
+                "%zu with one more than ten times as large.",
+                done, kept, part(kept, done), awful);
+  page << line;
+  if (over > 0) {
+    std::snprintf(line, sizeof line, " %zu of the %zu with a larger error say so themselves.", told,
+                  over);
+    page << line;
+  }
+  std::snprintf(line, sizeof line,
+                " In %.0f %% the error lies within a factor of 3 below, in %.0f %% of 30. To find "
+                "that out, half of the runs take at most %.1f times the section evaluations of "
+                "their last run alone.\n\n",
+                part(within_three, done), part(within_thirty, done), dearer[dearer.size() / 2]);
   page << line;
 }
 

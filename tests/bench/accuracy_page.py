@@ -30,6 +30,8 @@ SCENES = [
      "The six-rod robot of the literature in one equilibrium, found from straight rods."),
     ("scenes/rods/tapered.xml", [],
      "A cantilever at rest, thinner towards its tip."),
+    ("scenes/rods/bundle.xml", ["--duration", "0.3", "--quick"],
+     "Three wires with damping, bound together, swing when a force lets go of them."),
     ("scenes/fluid/sinking_rod.xml", ["--duration", "0.3", "--quick"],
      "A rod that nothing holds sinks in water, lying across its way."),
     ("scenes/tendons/till_tendon_dynamics.xml", ["--duration", "1", "--quick"],
@@ -54,10 +56,13 @@ and pictures, the best of three where runs are short. It was taken on {machine},
 same on every machine: compare methods by them. (Strain and collocation evaluate larger sections of algebra between
 them, so one evaluation stands for more work there than in shooting.)
 
-How a scene chooses: `<accuracy>` asks for an error and leaves the rest to the program; `<time scheme= tolerance=>` or
+How a scene chooses: `<accuracy>` asks for an error and leaves the rest to the program, here the line `accuracy`, with
+the pilots by which the program finds out what to choose (the figure is of any link or rod, so that one channel's error is
+smaller); `<time scheme= tolerance=>` or
 `step=`, `<space points=>` say it exactly; `--set scheme=esdirk43 --set tolerance=1e-6 --set points=6` does on the
 command line. Steps: `backward_euler` is of first order, `bdf2`, `bdf_alpha`, `generalized_alpha`, `tr_bdf2` of second,
-`esdirk32` of third, `esdirk43` of fourth; the last three can adapt their step to a tolerance. In space, `points` are
+`esdirk32` of third, `esdirk43` of fourth, `radau5` of fifth; `tr_bdf2`, `esdirk32`, `esdirk43` and `ida`, of variable order,
+can adapt their step to a tolerance. In space, `points` are
 cells of Gauss collocation of order 6 along each rod.
 """
 

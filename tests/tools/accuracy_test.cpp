@@ -69,7 +69,8 @@ TEST_F(Accuracy, CutsEveryRodForItself) {
                 .code,
             1);
   int least = 1000, most = 0;
-  for (const Json& rod : json("asked/run.json")["method"]["rods"]) {
+  const Json report = json("asked/run.json");
+  for (const Json& rod : report["method"]["rods"]) {
     least = std::min(least, rod["elements"].get<int>());
     most = std::max(most, rod["elements"].get<int>());
   }

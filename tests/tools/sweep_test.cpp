@@ -75,6 +75,24 @@ TEST_F(Sweep, SaysWhatAccuracyCostsInWordsTablesAndAPage) {
             std::string::npos);
 }
 
+// What is asked for is what a sweep over it shows, and its pilots are paid for.
+TEST_F(Sweep, OverAccuraciesKeepsThem) {
+  const std::string words = "sweep " + held_ + "--repeat 1 --vary ";
+  const Answer answer = run(words + "accuracy=1e-4,1e-6,1e-8");
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Json report = json("out/released_rod_sweep/sweep.json");
+  long last = 0;
+  for (const Json& one : report["runs"]) {
+    EXPECT_LE(one["errors"][0].get<double>(),
+              std::stod(one["settings"]["accuracy"].get<std::string>()));
+    EXPECT_GT(one["section_evaluations"].get<long>(), last);
+    last = one["section_evaluations"];
+  }
+  ASSERT_EQ(run(words + "points=12").code, 0);
+  const Json once = json("out/released_rod_sweep/sweep.json");
+  EXPECT_GT(last, once["runs"][0]["section_evaluations"].get<long>());
+}
+
 TEST_F(Sweep, HasTheSameErrorsOnAnyNumberOfThreadsAndAfterAnInterruption) {
   const std::string words = "sweep " + held_ + "--vary points=1:8:8 --repeat 1 ";
   ASSERT_EQ(run(words + "-j 1 -o one").code, 0);

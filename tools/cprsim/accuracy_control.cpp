@@ -17,8 +17,8 @@ constexpr double kLeastOrder = 2. / 3;  // kappa of (1)
 constexpr double kLikelyOrder = 0.85;   // likewise, to aim by
 constexpr double kAim = 0.5;            // of what is asked for
 constexpr double kSafety = 1.5;         // of kappa that is known from three runs only
-constexpr double kMostGain = 10;        // that a run is believed to be nearer than to the last one
-constexpr double kLeastAim = 0.5, kMostAim = 1e-3;  // of what the last run asked for
+constexpr double kMostGain = 30;        // that a run is believed to be nearer than to the last one
+constexpr double kLeastAim = 0.2, kMostAim = 1e-3;  // of what the last run asked for
 constexpr int kMostRuns = 7;
 constexpr int kMostFailures = 5;
 constexpr double kBolder = 64;            // after a failure: twice as many cells
@@ -45,7 +45,7 @@ Scene looser(const Scene& scene) {
 
 /// kappa of (2), by bisection: the quotient grows with it.
 double order_seen(double quotient, double times_1, double times_2, double least) {
-  double low = least, high = 1;
+  double low = least, high = kLikelyOrder;
   for (int i = 0; i < 40; ++i) {
     const double kappa = 0.5 * (low + high);
     const double a = std::pow(times_1, kappa), b = std::pow(times_2, kappa);
@@ -132,13 +132,16 @@ void AccuracyControl::begin(Scene scene) {
   track_.emplace(scene_);
 }
 
-/// What scene() is to be after the last run, whose errors are to be made `factor` times as large
-/// and go with this power of what is asked for.
-void AccuracyControl::aim(double factor, double order) {
-  Scene scene = levels_.back().scene;
-  double& accuracy = *scene.solver.accuracy;
-  const double less = std::pow(std::min(factor, kLeastAim), 1 / std::max(order, kLeastOrder));
-  accuracy = std::max(kLeastAccuracy, accuracy * std::max(less, kMostAim));
+/// What scene() is to be after the last run, of which too large an error is to be feared. It is
+/// likely to be smaller; and a run that differs little from the last one would tell little of it.
+void AccuracyControl::aim(double feared) {
+  const Level& last = levels_.back();
+  const double likely = error_by(last.distance, last.times, kLikelyOrder);
+  const double factor =
+      std::isfinite(feared) ? kAim * report_.asked / std::sqrt(feared * likely) : kLeastAim;
+  const double less = std::clamp(std::pow(factor, 1 / kLikelyOrder), kMostAim, kLeastAim);
+  Scene scene = last.scene;
+  scene.solver.accuracy = std::max(kLeastAccuracy, less * *scene.solver.accuracy);
   begin(std::move(scene));
 }
 
@@ -160,6 +163,7 @@ bool AccuracyControl::fly(Scene scene, const std::function<bool()>& stop) {
   const QuietRun run = run_quietly(scene_, onlooker(*track_), stop);
   ++report_.runs;
   report_.evaluations += run.statistics.section_evaluations;
+  report_.pilots_cpu_seconds += run.cpu_seconds;
   // so coarse that it came to nothing: the next run will be another one's pilot
   if (run.status != RunStatus::kDone) return false;
   land(std::move(*track_));
@@ -195,21 +199,21 @@ void AccuracyControl::fly_pilots(const std::function<bool()>& stop) {
       repeat(last, error);
     return;
   }
-  aim(kAim * report_.asked / error_by(last.distance, last.times, kLikelyOrder), kLikelyOrder);
+  aim(error);
 }
 
-AccuracyControl::Estimate AccuracyControl::estimate() const {
+double AccuracyControl::estimate() const {
   const std::size_t n = levels_.size();
-  if (n < 2) return {kUnknown, kLikelyOrder};
+  if (n < 2) return kUnknown;
   const Level& last = levels_[n - 1];
   if (n < 3 || last.distance == 0 || levels_[n - 2].times <= 1 || last.times <= 1)
-    return {estimated_error(last.distance, last.times), kLikelyOrder};
+    return estimated_error(last.distance, last.times);
   const Level& before = levels_[n - 2];
   // friction along a rod leaves shooting the first of its six orders, drag a motion half of its own
   const double least = scene_.simulation.mode == Mode::kDynamic ? 1. / 3 : 1. / 6;
   const double order = order_seen(before.distance / last.distance, before.times, last.times, least);
   const double error = kSafety * error_by(last.distance, last.times, order);
-  return {std::max(error, last.distance / kMostGain), order};
+  return std::max(error, last.distance / kMostGain);
 }
 
 bool AccuracyControl::refine(long evaluations) {
@@ -219,15 +223,13 @@ bool AccuracyControl::refine(long evaluations) {
     return false;
   }
   land(std::move(*track_));
-  const Estimate estimate = this->estimate();
-  report_.estimate = estimate.error;
+  report_.estimate = estimate();
   const bool at_the_end = *scene_.solver.accuracy <= kLeastAccuracy;
   const bool settled = report_.reached() || at_the_end || went_back_ || report_.runs >= kMostRuns ||
                        !report_.held_back.empty();
   if (settled) return false;
   report_.evaluations += evaluations;
-  aim(std::isfinite(estimate.error) ? kAim * report_.asked / estimate.error : 1 / kLooser,
-      estimate.order);
+  aim(report_.estimate);
   return true;
 }
 

@@ -6,7 +6,7 @@
 // Two runs know nothing of kappa: it is taken for 2/3, what the least able of the schemes that
 // adapt has. Of three runs the quotient of both distances tells it,
 //   d_1 / d_2 = r_2^kappa (r_1^kappa - 1) / (r_2^kappa - 1).                                  (2)
-// No run is believed to be more than ten times nearer than the one before it. Two pilots, for
+// No run is believed to be more than thirty times nearer than the one before it. Two pilots, for
 // errors 100 and 10 times as large as asked for, tell what a run has to aim at to get there, and no
 // farther: what is more accurate is not what was asked for, but costs more. The first pilot's error
 // is at most d + e. The coarser pilot that is good enough is run again with all its outputs. Where
@@ -36,10 +36,11 @@ double residual_for(const Scene& scene);
 /// What came of an accuracy that was asked for.
 struct AccuracyReport {
   double asked = 0;
-  double estimate = 0;    ///< (1)
-  std::string unit;       ///< of both, with what they are about: "m", "of the longest rod"
-  int runs = 0;           ///< all told, pilots and last one included
-  long evaluations = 0;   ///< section evaluations of those before the last
+  double estimate = 0;   ///< (1)
+  std::string unit;      ///< of both, with what they are about: "m", "of the longest rod"
+  int runs = 0;          ///< all told, pilots and last one included
+  long evaluations = 0;  ///< section evaluations of those before the last
+  double pilots_cpu_seconds = 0;
   std::string held_back;  ///< what the scene fixes and accuracy therefore does not choose
 
   bool reached() const { return estimate <= asked; }
@@ -82,14 +83,9 @@ class AccuracyControl {
     AnswerTrack track;
   };
 
-  struct Estimate {
-    double error = 0;
-    double order = 0;  ///< kappa
-  };
-
-  void aim(double factor, double order);
+  void aim(double feared);
   void begin(Scene scene);
-  Estimate estimate() const;  ///< of the last level
+  double estimate() const;  ///< of the last level
   bool fly(Scene scene, const std::function<bool()>& stop);
   void land(AnswerTrack track);
   void repeat(const Level& level, double estimate);

@@ -30,8 +30,8 @@ void Extremes::visit(Archive& archive) {
 
 std::optional<double> Extremes::relative_balance() const {
   // an equilibrium that stays one exchanges round-off
-  const double stored = std::abs(energy_.elastic) + std::abs(energy_.gravity) +
-                        std::abs(energy_.magnetic);
+  const double stored =
+      std::abs(energy_.elastic) + std::abs(energy_.gravity) + std::abs(energy_.magnetic);
   if (exchanged() <= 1e-12 * stored) return std::nullopt;
   return worst_balance_ / exchanged();
 }

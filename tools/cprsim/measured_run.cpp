@@ -2,7 +2,9 @@
 #include "tools/cprsim/measured_run.h"
 
 #include <algorithm>
+#include <optional>
 
+#include "tools/cprsim/asked_run.h"
 #include "tools/cprsim/trajectory_match.h"
 
 namespace cprsim {
@@ -35,14 +37,26 @@ std::vector<Channel> channels_named(const Scene& scene, const std::vector<std::s
   return channels;
 }
 
-/// Runs once; the series is that of this run.
-QuietRun run_once(const Scene& scene, const Looking& looking, MeasuredRun& result,
+/// Runs once; the series is that of this run. What finding out its error takes counts as its cost.
+QuietRun run_once(const Scene& scene, bool as_asked, const Looking& looking, MeasuredRun& result,
                   const std::function<bool()>& stop) {
   const double end = scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration;
-  SeriesRecorder recorder(scene, channels_named(scene, looking.channels),
-                          looking.instants.value_or(evenly(end)));
-  const QuietRun run = run_quietly(scene, onlooker(recorder), stop);
-  result.series = recorder.series();
+  std::optional<SeriesRecorder> recorder;
+  const auto look = [&] {
+    recorder.emplace(scene, channels_named(scene, looking.channels),
+                     looking.instants.value_or(evenly(end)));
+    return onlooker(*recorder);
+  };
+  QuietRun run;
+  if (as_asked) {
+    const AskedRun all = run_as_asked(scene, look, stop);
+    run = all.last;
+    run.cpu_seconds = all.cpu_seconds;
+    run.statistics.section_evaluations = all.section_evaluations;
+  } else {
+    run = run_quietly(scene, look(), stop);
+  }
+  result.series = recorder->series();
   return run;
 }
 
@@ -68,8 +82,10 @@ MeasuredRun measured_run(const std::string& path, const SceneOptions& options,
   }
   try {
     watch_pairs(*loaded.scene, channels_named(*loaded.scene, looking.channels));
+    const bool as_asked = std::any_of(settings.begin(), settings.end(),
+                                      [](const auto& s) { return s.first == "accuracy"; });
     for (int i = 0; i < looking.repetitions; ++i) {
-      const QuietRun run = run_once(*loaded.scene, looking, result, stop);
+      const QuietRun run = run_once(*loaded.scene, as_asked, looking, result, stop);
       result.cpu_seconds = i == 0 ? run.cpu_seconds : std::min(result.cpu_seconds, run.cpu_seconds);
       result.statistics = run.statistics;
       result.end_time = run.end_time;

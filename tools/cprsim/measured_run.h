@@ -37,7 +37,9 @@ struct Looking {
   int repetitions = 1;  ///< at most, of which the fastest counts; long runs are not repeated
 };
 
-/// Loads, runs and looks. @param stop asked before every step; a run that it ends is a failure
+/// Loads, runs and looks. A setting `accuracy` is kept to, as by `cprsim run`, and all runs that it
+/// takes are counted; an accuracy of the scene itself is what it is cut by. @param stop asked
+/// before every step; a run that it ends is a failure
 MeasuredRun measured_run(const std::string& path, const SceneOptions& options,
                          const Settings& settings, const Looking& looking,
                          const std::function<bool()>& stop);

@@ -29,8 +29,8 @@ void add_scene_options(CommandLine& line, SceneOptions& options) {
   line.number("--duration", options.duration, "Simulate this many seconds", "greater than 0",
               positive);
   line.number("--step", options.step, "Fixed time step in seconds", "greater than 0", positive);
-  line.number("--accuracy", options.accuracy, "Error of links and rods asked for, in metres", "greater than 0",
-              positive);
+  line.number("--accuracy", options.accuracy, "Error of links and rods asked for, in metres",
+              "greater than 0", positive);
   line.one("--method", "WHICH", "How rods are solved, as in <cprsim:solver method>",
            [&options](const std::string& word) { options.method = word; });
   line.one("--seed", "N", "Seed of everything random", [&options](const std::string& text) {

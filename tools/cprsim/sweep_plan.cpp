@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "scenes/loader/solver_setting.h"
@@ -216,6 +217,13 @@ std::vector<std::vector<SweepAxis>> default_grids(const Scene& scene, bool quick
   using Values = std::vector<std::string>;
   const auto pick = [quick](const Values& all, const Values& few) { return quick ? few : all; };
   std::vector<std::vector<SweepAxis>> grids;
+  if (!scene.accuracy_goal &&
+      !scene.rods.empty()) {  // what the program chooses by itself, with what choosing costs
+    Values errors;
+    for (const int digits : quick ? std::vector<int>{3, 5} : std::vector<int>{2, 3, 4, 5, 6})
+      errors.push_back(fmt::format("{:.3g}", longest_rod(scene) * std::pow(10, -digits)));
+    grids.push_back({{"accuracy", errors}});
+  }
   if (scene.simulation.mode != Mode::kDynamic) {
     const Values points = pick({"1", "2", "3", "4", "6", "9", "12", "18", "24"}, {"2", "4", "8"});
     const SweepAxis shooting{"method", {"shooting"}};
@@ -244,7 +252,7 @@ std::vector<std::vector<SweepAxis>> default_grids(const Scene& scene, bool quick
                      points,
                      {"scheme",
                       {"backward_euler", "bdf2", "bdf_alpha", "generalized_alpha", "tr_bdf2",
-                       "esdirk32", "esdirk43"}},
+                       "esdirk32", "esdirk43", "radau5"}},
                      {"step", steps}});
   Values adaptive{"tr_bdf2", "esdirk32", "esdirk43"};
   if (!scene.effects.has(Effect::kContact) && !scene.effects.has(Effect::kSelfContact))

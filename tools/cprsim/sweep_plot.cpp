@@ -74,7 +74,7 @@ std::string script_of(const SweepResult& result) {
   const auto lines = lines_of(result);
   const SweepMeasureName& measure = result.plan.measures[0];
   const int height = std::max(480, 80 + 21 * static_cast<int>(lines.size()));
-  std::string text = gnuplot_head("sweep", 1500, height);
+  std::string text = gnuplot_head("sweep", 1620, height);
   text +=
       "data = folder.'/sweep.csv'\nset datafile missing NaN\nset logscale xy\n"
       "set format '10^{%T}'\nset multiplot\n";

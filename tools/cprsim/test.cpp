@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 
 #include "scenes/loader/files.h"
-#include "tools/cprsim/accuracy_control.h"
+#include "tools/cprsim/asked_run.h"
 #include "tools/cprsim/commands.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/interrupt.h"
-#include "tools/cprsim/quiet_run.h"
 #include "tools/cprsim/run_report.h"
 #include "tools/cprsim/scene_options.h"
 #include "tools/cprsim/stopwatch.h"
@@ -68,32 +68,14 @@ void judge_rejection(const LoadedScene& loaded, TestCase& test) {
   }
 }
 
-/// As `cprsim run` would: where an accuracy is asked for, until it is reached.
-QuietRun run_as_asked(const Scene& scene, std::vector<ExpectResult>& results) {
-  const auto stop = [] { return stop_signal() != 0; };
-  AccuracyControl control(scene);
-  if (control.asked()) control.fly_pilots(stop);
-  while (true) {
-    Expectations expectations(scene);
-    const Onlooker judge = onlooker(expectations), track = onlooker(control.track());
-    const Onlooker both{[&](const Snapshot& start) {
-                          judge.begin(start);
-                          track.begin(start);
-                        },
-                        [&](const Snapshot& before, const Snapshot& now) {
-                          judge.step(before, now);
-                          track.step(before, now);
-                        }};
-    const QuietRun run = run_quietly(control.scene(), control.asked() ? both : judge, stop);
-    results = expectations.results(run.status == RunStatus::kDone);
-    if (!control.asked() || run.status == RunStatus::kRunning) return run;
-    const long work = run.statistics.section_evaluations;
-    if (!(run.status == RunStatus::kDone ? control.refine(work) : control.retry(work))) return run;
-  }
-}
-
 void judge_run(const Scene& scene, TestCase& test) {
-  const QuietRun run = run_as_asked(scene, test.expectations);
+  std::optional<Expectations> expectations;
+  const auto judge = [&] {
+    expectations.emplace(scene);
+    return onlooker(*expectations);
+  };
+  const QuietRun run = run_as_asked(scene, judge, [] { return stop_signal() != 0; }).last;
+  test.expectations = expectations->results(run.status == RunStatus::kDone);
   const bool met =
       std::all_of(test.expectations.begin(), test.expectations.end(),
                   [](const ExpectResult& result) { return result.verdict == Verdict::kMet; });
