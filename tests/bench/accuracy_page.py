@@ -104,6 +104,8 @@ def methods_table(report):
 
     def family(run):
         s = run["settings"]
+        if "accuracy" in s:
+            return "accuracy, with its pilots"
         how = s.get("scheme", s.get("integrator", ""))
         how += " adaptive" if "tolerance" in s and "scheme" in s else ""
         return ", ".join(part for part in (s.get("method", ""), how) if part)

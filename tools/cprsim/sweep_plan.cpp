@@ -10,6 +10,8 @@
 
 #include "scenes/loader/solver_setting.h"
 #include "scenes/loader/values.h"
+#include "tools/cprsim/accuracy_control.h"
+#include "tools/cprsim/resolution.h"
 #include "tools/series/read_series.h"
 #include "tools/sinks/csv.h"
 
@@ -137,19 +139,45 @@ Settings settings_of(const std::string& text) {
   return settings;
 }
 
+/// Cells that shooting cuts the scene's rods into, of the one with most of them: more than six
+/// where a rod is wound up or tied.
+int usual_cells(Scene scene) {
+  constexpr int kPlain = 6;
+  int most = kPlain;
+  free_settings(scene.solver);
+  scene.solver.accuracy.reset();
+  scene.solver.method = Method::kShooting;
+  try {
+    for (const Resolution& rod : resolution_of(scene))
+      if (rod.method == Method::kShooting) most = std::max(most, rod.elements);
+  } catch (const std::invalid_argument&) {
+    return kPlain;  // not by shooting: runs will say why
+  }
+  return most;
+}
+
+/// So many times the usual, of a rod that usually has six.
+std::vector<std::string> cells_as(const std::vector<int>& of_six, int usual) {
+  std::vector<std::string> values;
+  for (const int n : of_six)
+    values.push_back(std::to_string((n * usual + 5) / 6));
+  return values;
+}
+
 /// A solution that is tight in space and time, and one that is less so.
 std::pair<Settings, Settings> tight_settings(const SweepPlan& plan, const SweepOptions& options,
                                              const char* scheme) {
   double tolerance = 1e-6;
-  int points = 6;
+  int points = plan.usual_cells;
   for (const SweepPoint& point : plan.points)
     for (const auto& [name, value] : point.settings) {
       const double number = parse_number(value).value_or(0);
       if (name == "tolerance" && number > 0) tolerance = std::min(tolerance, number);
-      if (name == "points") points = std::max(points, static_cast<int>(std::min(number, 24.0)));
+      if (name == "points")
+        points = std::max(points, static_cast<int>(std::min(number, 4.0 * plan.usual_cells)));
     }
   tolerance = std::max(tolerance / 100, options.quick ? 1e-9 : 1e-11);
-  points = std::max(12, 2 * points);
+  points *= 2;
   const Settings space{{"method", "shooting"},
                        {"integrator", "gauss6"},
                        {"points", std::to_string(points)},
@@ -216,6 +244,7 @@ std::vector<std::string> SweepPlan::channels() const {
 std::vector<std::vector<SweepAxis>> default_grids(const Scene& scene, bool quick) {
   using Values = std::vector<std::string>;
   const auto pick = [quick](const Values& all, const Values& few) { return quick ? few : all; };
+  const int usual = usual_cells(scene);
   std::vector<std::vector<SweepAxis>> grids;
   if (!scene.accuracy_goal &&
       !scene.rods.empty()) {  // what the program chooses by itself, with what choosing costs
@@ -225,12 +254,15 @@ std::vector<std::vector<SweepAxis>> default_grids(const Scene& scene, bool quick
     grids.push_back({{"accuracy", errors}});
   }
   if (scene.simulation.mode != Mode::kDynamic) {
-    const Values points = pick({"1", "2", "3", "4", "6", "9", "12", "18", "24"}, {"2", "4", "8"});
+    const Values points = cells_as(
+        quick ? std::vector<int>{2, 4, 8} : std::vector<int>{1, 2, 3, 4, 6, 9, 12, 18, 24}, usual);
     const SweepAxis shooting{"method", {"shooting"}};
     grids.push_back({shooting, {"integrator", {"gauss2", "gauss4", "gauss6"}}, {"points", points}});
-    grids.push_back({shooting,
-                     {"integrator", pick({"euler", "rk4"}, {"rk4"})},
-                     {"points", pick({"6", "12", "24", "48", "96"}, {"12", "24"})}});
+    grids.push_back(
+        {shooting,
+         {"integrator", pick({"euler", "rk4"}, {"rk4"})},
+         {"points", cells_as(quick ? std::vector<int>{12, 24} : std::vector<int>{6, 12, 24, 48, 96},
+                             usual)}});
     grids.push_back({{"method", {"strain"}},
                      {"order", pick({"2", "4", "6", "8", "10", "12"}, {"2", "4", "8"})}});
     grids.push_back({{"method", {"collocation"}},
@@ -246,7 +278,8 @@ std::vector<std::vector<SweepAxis>> default_grids(const Scene& scene, bool quick
       steps.push_back(fmt::format("{:.6g}", factor * h));
   for (const int digits : quick ? std::vector<int>{4, 6} : std::vector<int>{3, 4, 5, 6, 7, 8})
     tolerances.push_back(fmt::format("1e-{}", digits));
-  const SweepAxis shooting{"method", {"shooting"}}, points{"points", pick({"3", "6"}, {"6"})};
+  const SweepAxis shooting{"method", {"shooting"}},
+      points{"points", cells_as(quick ? std::vector<int>{6} : std::vector<int>{3, 6}, usual)};
   if (!steps.empty())
     grids.push_back({shooting,
                      points,
@@ -277,6 +310,7 @@ SweepPlan make_plan(const Scene& scene, const SweepOptions& options) {
   plan.duration = scene.simulation.mode == Mode::kStatic ? 0 : scene.simulation.duration;
   for (const RodSpec& rod : scene.rods)
     plan.length = std::max(plan.length, rod.length);
+  plan.usual_cells = usual_cells(scene);
   const SweepSpec* spec = sweep_of(scene, options);
   if (!options.vary.empty()) {
     add_grid(options.vary, plan);

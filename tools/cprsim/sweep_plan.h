@@ -54,6 +54,7 @@ struct SweepMeasureName {
 struct SweepPlan {
   std::string label, scene_hash;
   bool dynamic = false;
+  int usual_cells = 6;              ///< of shooting, of the rod that it cuts into most of them
   double duration = 0, length = 0;  ///< s, and the longest rod, m
   std::vector<std::string> axes;    ///< names of all that is varied
   std::vector<SweepPoint> points;
