@@ -47,5 +47,35 @@ TEST_F(HeavyThread, WhoseSearchIsGivenUpSaysHowFarItCame) {
   EXPECT_NE(causes().find("with 25 % of the loads carried"), std::string::npos) << causes();
 }
 
+// 0.3 m long, between the world's origin and a frame 0.5 m away, on a body that stands 0.2 m high.
+TEST(ShortRod, IsNamedWithTheGapUnlessItStretches) {
+  Scene scene;
+  scene.simulation.mode = Mode::kStatic;
+  BodySpec body;
+  body.X_WB.p = {0, 0, 0.2};
+  scene.bodies.push_back(body);
+  RodSpec rod;
+  rod.name = "leg";
+  rod.length = 0.3;
+  rod.base.joint = rod.tip.joint = EndJoint::kFixed;
+  rod.tip.at.body = 0;
+  rod.tip.at.X_BF.p = {0.3, 0, 0.2};
+  scene.rods.push_back(rod);
+  const auto causes = [&](bool started) {
+    return all_of(likely_causes(scene, ProblemFacts{}, SolveReport{}, 0, started));
+  };
+  EXPECT_EQ(causes(false).find("rod 'leg' is 0.3 m long, the gap between its ends 0.5 m"), 0U)
+      << causes(false);
+  EXPECT_EQ(causes(true).find("gap"), std::string::npos);
+  scene.rods[0].length = 0.6;
+  EXPECT_EQ(causes(false), "");
+  scene.rods[0].length = 0.3;
+  scene.rods[0].tip.joint = EndJoint::kFree;
+  EXPECT_EQ(causes(false), "");
+  scene.rods[0].tip.joint = EndJoint::kFixed;
+  scene.effects.set(Effect::kExtension, true);
+  EXPECT_EQ(causes(false), "");
+}
+
 }  // namespace
 }  // namespace cprsim

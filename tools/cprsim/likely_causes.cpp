@@ -109,6 +109,26 @@ void blame_weight(const Scene& scene, const ProblemFacts& facts, Causes& causes)
       heaviest->name, times));
 }
 
+Vec3 place_of(const Scene& scene, const FrameRef& end) {
+  if (end.body == kWorld) return end.X_BF.p;
+  return (scene.bodies[static_cast<std::size_t>(end.body)].X_WB * end.X_BF).p;
+}
+
+/// Between ends that stay where they are, or whose bodies would have to come nearer first.
+void blame_length(const Scene& scene, Causes& causes) {
+  if (scene.effects.has(Effect::kExtension)) return;
+  for (const RodSpec& rod : scene.rods) {
+    if (rod.base.joint == EndJoint::kFree || rod.tip.joint == EndJoint::kFree) continue;
+    const double gap = (place_of(scene, rod.tip.at) - place_of(scene, rod.base.at)).norm();
+    if (gap <= rod.length) continue;
+    causes.push_back(fmt::format(
+        "rod '{}' is {:.6g} m long, the gap between its ends {:.6g} m: make it longer, or "
+        "list <extension/>",
+        rod.name, rod.length, gap));
+    return;
+  }
+}
+
 void blame_work(const SolveReport& solve, Causes& causes) {
   if (solve.status != SolveStatus::kWorkLimit) return;
   const std::string reached =
@@ -155,6 +175,7 @@ Causes likely_causes(const Scene& scene, const ProblemFacts& facts, const SolveR
                      double time, bool started) {
   Causes causes;
   const double step = facts.step > 0 ? facts.step : scene.max_step_size;
+  if (!started) blame_length(scene, causes);
   if (started) blame_jumps(scene, time, step, causes);
   if (started) blame_spin(scene, facts, causes);
   blame_resolution(scene, facts, causes);
