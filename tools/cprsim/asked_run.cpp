@@ -32,6 +32,7 @@ AskedRun run_as_asked(const Scene& scene, const std::function<Onlooker()>& looki
                                 : result.last.status == RunStatus::kFailed ? control.retry(work)
                                                                            : false);
   }
+  result.scene = control.scene();
   result.accuracy = control.report();
   result.cpu_seconds += result.accuracy.pilots_cpu_seconds;
   result.section_evaluations =

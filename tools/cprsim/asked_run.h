@@ -12,6 +12,7 @@ namespace cprsim {
 
 struct AskedRun {
   QuietRun last;
+  Scene scene;  ///< as it was run then
   AccuracyReport accuracy;
   long section_evaluations = 0;  ///< of all runs
   double cpu_seconds = 0;        ///< likewise
