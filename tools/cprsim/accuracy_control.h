@@ -6,7 +6,8 @@
 // Two runs know nothing of kappa: it is taken for 2/3, what the least able of the schemes that
 // adapt has. Of three runs the quotient of both distances tells it,
 //   d_1 / d_2 = r_2^kappa (r_1^kappa - 1) / (r_2^kappa - 1).                                  (2)
-// No run is believed to be more than thirty times nearer than the one before it. Two pilots, for
+// Of two runs no r above ten counts, and of three no run is believed to be more than thirty times
+// nearer than the one before it. Two pilots, for
 // errors 100 and 10 times as large as asked for, tell what a run has to aim at to get there, and no
 // farther: what is more accurate is not what was asked for, but costs more. The first pilot's error
 // is at most d + e. The coarser pilot that is good enough is run again with all its outputs. Where
