@@ -56,7 +56,7 @@ TEST(Slenderness, OfAHundredThousandStandsStillAndFalls) {
   scene.simulation.mode = Mode::kDynamic;
   scene.simulation.initial_static = true;
   scene.simulation.duration = 0.2;
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   const Snapshot end = run_to_end(simulation);
   EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
   measure("steps retried", static_cast<double>(simulation.statistics().retried), 0);
@@ -95,7 +95,7 @@ TEST(Turns, TenTwistsPassPiWithoutASpike) {
   scene.solver.step = 0.01;
   scene.simulation.mode = Mode::kQuasistatic;
   scene.simulation.duration = 1;
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   const Snapshot end = run_to_end(simulation);
   ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
   const double torque = std::abs(end.rods[0].points[7].moment.z());
@@ -138,7 +138,7 @@ Scene euler_column(double times_critical, double sideways) {
 // and is said to be unstable above.
 TEST(EulerColumn, IsJudgedAThousandthBelowAndAbove) {
   for (const double load : {0.999, 1.001}) {
-    StaticStudy study(euler_column(load, 0));
+    StaticStudy study(by_method(euler_column(load, 0)));
     ASSERT_TRUE(study.solve().converged());
     const Stability judged = judge(study);
     EXPECT_EQ(judged.verdict, load < 1 ? StabilityVerdict::kStable : StabilityVerdict::kUnstable);
@@ -160,7 +160,7 @@ TEST(EulerColumn, ImperfectByAMillionthLeansOrBuckles) {
           std::abs(tip(below) / (1e-6 / 0.999 * (std::tan(x) / x - 1)) - 1), 1e-3);
 
   // from a sideways hundredth down to a millionth
-  StaticStudy above(euler_column(1.001, 1e-2));
+  StaticStudy above(by_method(euler_column(1.001, 1e-2)));
   ASSERT_TRUE(above.solve().converged());
   const double P = -above.scene().loads[0].force.z() / 1.001;
   above.set({Parameter::Kind::kForce, 0, 0, "", ""}, 1e-6 * P);
@@ -173,7 +173,7 @@ TEST(EulerColumn, ImperfectByAMillionthLeansOrBuckles) {
 // N12: a start on an unstable equilibrium is found, and flagged with its number of directions down.
 TEST(UnstableStart, IsFlagged) {
   for (const double load : {2., 10., 30.}) {
-    StaticStudy study(euler_column(load, 0));
+    StaticStudy study(by_method(euler_column(load, 0)));
     ASSERT_TRUE(study.solve().converged());
     // buckling loads are (1, 9, 25) P_E, each sideways both ways
     EXPECT_EQ(judge(study).unstable, load < 9 ? 2 : load < 25 ? 4 : 6) << load;
@@ -234,7 +234,7 @@ TEST(CoincidentEnds, GiveALoop) {
   for (const int cells : {12, 20, 30, 40}) {
     Scene scene = cantilever(kLength, 1e-3, cells);
     scene.rods[0].tip.joint = EndJoint::kBall;
-    StaticStudy study(scene);
+    StaticStudy study(by_method(scene));
     ASSERT_TRUE(study.solve().converged()) << cells;
     const RodSample rod = study.snapshot().rods[0];
     EXPECT_EQ(count_unstable(study.robot()).unstable, 0) << cells;

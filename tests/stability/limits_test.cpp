@@ -31,7 +31,7 @@ TEST(QuasiStatics, StopsAtAFold) {
   scene.loads[0].force = {0, 0, -20000};
   scene.loads[0].has_profile = true;
   scene.loads[0].profile.terms = {ramp(0, 1)};
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   double farthest = 0;
   while (simulation.status() == RunStatus::kRunning) {
@@ -62,7 +62,7 @@ TEST(QuasiStatics, KeepsToItsInstants) {
   ProfileTerm late = ramp(0, 1);
   late.start = 0.013;
   scene.loads[0].profile.terms = {late};
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   std::vector<double> times;
   while (simulation.status() == RunStatus::kRunning) {
@@ -102,7 +102,7 @@ TEST(DeadCentre, StopsTheRunAndIsNamed) {
     scene.simulation.mode = mode;
     scene.simulation.duration = 1;
     scene.solver.step = 0.01;
-    Simulation simulation(scene);
+    Simulation simulation(by_method(scene));
     simulation.start();
     while (simulation.status() == RunStatus::kRunning)
       simulation.advance();

@@ -39,9 +39,10 @@ TEST(TinyStep, KeepsRestAtRest) {
   Scene scene = moving_rod(0.25e-3, 24, 1e-5, 1e-5);
   const double EI = bending_stiffness(scene.rods[0]);
   add_load(scene, 1, {-0.9 * EI / (kLength * kLength), 0, 0});
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   EXPECT_NEAR(simulation.facts().rods[0].growth_exponent, 138, 2);
-  EXPECT_GE(simulation.facts().rods[0].segments, 23);
+  if (simulation.facts().rods[0].method == Method::kShooting)
+    EXPECT_GE(simulation.facts().rods[0].segments, 23);
   simulation.start();
   const Snapshot rest = simulation.now();
   simulation.advance();
@@ -57,7 +58,7 @@ TEST(FreeFall, OfAFreeRodIsExact) {
   for (const SchemeKind scheme :
        {SchemeKind::kEsdirk32, SchemeKind::kGeneralizedAlpha, SchemeKind::kBdfAlpha}) {
     scene.solver.scheme = scheme;
-    Simulation simulation(scene);
+    Simulation simulation(by_method(scene));
     const Snapshot end = run_to_end(simulation);
     ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
     measure(std::string("position error, m, ") + to_string(scheme),
@@ -69,17 +70,18 @@ TEST(FreeFall, OfAFreeRodIsExact) {
 TEST(Impulse, GivesItsMomentum) {
   Scene scene = free_rod(1e-3, 12, 5e-4, 0.02);
   let_go(add_load(scene, 0.5, {4, 0, 0}), 2e-3);
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   const Snapshot end = run_to_end(simulation);
   ASSERT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
   // internal forces vanish at free ends, so the whole rod's momentum is the mean velocity, here by
   // Boole's rule
   constexpr double kBoole[] = {14, 32, 12, 32};
-  const auto& points = end.rods[0].points;
+  constexpr int kPieces = 12;
   double mean = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    mean += (i == 0 || i + 1 == points.size() ? 7 : kBoole[i % 4]) * points[i].velocity.x();
-  mean *= 2. / 45 / (static_cast<double>(points.size()) - 1);
+  for (int i = 0; i <= kPieces; ++i)
+    mean += (i == 0 || i == kPieces ? 7 : kBoole[i % 4]) *
+            point_at(end.rods[0], static_cast<double>(i) / kPieces).velocity.x();
+  mean *= 2. / 45 / kPieces;
   const double mass = section_properties(scene.rods[0]).rhoA * kLength;
   measure("momentum error", std::abs(mass * mean / 8e-3 - 1), 5e-4);
 }
@@ -92,7 +94,7 @@ TEST(LongSwing, LosesEnergyAndNeverGainsAny) {
   Scene scene = moving_rod(1e-3, 4, step, 5000 * step);
   scene.planar_normal = Vec3::UnitY();
   add_load(scene, 1, {-1.4 * EI / (kLength * kLength), 0, 0}, Vec3::Zero(), true);
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   const double start = simulation.now().energy.elastic;
   double last = start, gained = 0;
@@ -112,10 +114,10 @@ TEST(HugeStep, GoesToTheEquilibrium) {
   Scene scene = moving_rod(1e-3, 8, 0.5, 40);
   switch_on(scene, {Effect::kGravity});
   scene.gravity = {-9.81, 0, 0};
-  Simulation still(scene);
+  Simulation still(by_method(scene));
   still.start();
   add_load(scene, 1, {0.05, 0, 0}, Vec3::Zero(), true);
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   const double from = tip_distance(simulation.now(), still.now());
   EXPECT_GT(from, 0.005);
@@ -141,7 +143,7 @@ TEST(HangingPlate, IsStableFromAGramToATon) {
     scene.simulation.mode = Mode::kDynamic;
     scene.simulation.initial_static = true;
     scene.simulation.duration = 0.02;
-    Simulation simulation(scene);
+    Simulation simulation(by_method(scene));
     simulation.start();
     const double start = simulation.now().energy.total;
     double gained = 0;
@@ -162,7 +164,7 @@ TEST(Impact, ArrivesWithTheSpeedOfSound) {
   Scene scene = free_rod(1e-3, 60, transit / 100, 1.5 * transit);
   switch_on(scene, {Effect::kExtension});
   add_load(scene, 0, {0, 0, 10});
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   // a step of force sends a front of velocity F / (A rho c); it doubles at the free end
   const double front = 10 / (section_properties(scene.rods[0]).rhoA * c);
@@ -186,7 +188,7 @@ TEST(Damping, MayBeNoneOrEnormous) {
     switch_on(scene, {Effect::kDamping});
     damp(scene.rods[0], tau);
     add_load(scene, 1, {-0.05, 0, 0}, Vec3::Zero(), true);
-    Simulation simulation(scene);
+    Simulation simulation(by_method(scene));
     simulation.start();
     const Snapshot start = simulation.now();
     while (simulation.status() == RunStatus::kRunning)
@@ -215,7 +217,7 @@ TEST(BecksColumn, FluttersAboveItsLoadAndNotBelow) {
     add_load(scene, 1, {0, 0, -20.0509 * times_critical * EI / (kLength * kLength)}).follower =
         true;
     add_load(scene, 1, {1e-6 * EI / (kLength * kLength), 0, 0}, Vec3::Zero(), true);
-    Simulation simulation(scene);
+    Simulation simulation(by_method(scene));
     simulation.start();
     double early = 0, late = 0;
     while (simulation.status() == RunStatus::kRunning) {

@@ -18,7 +18,7 @@ Scene contact_scene(const std::string& name) {
 
 // N21: ten seconds on a floor, held by nothing.
 TEST(Touch, ARodLiesStillOnAFloor) {
-  Simulation simulation(contact_scene("rod_on_floor"));
+  Simulation simulation(by_method(contact_scene("rod_on_floor")));
   simulation.start();
   const RodSample begun = simulation.now().rods[0];
   const double radius = 0.001, length = begun.length;
@@ -51,7 +51,7 @@ TEST(Touch, ARodFallsOntoAFloorInALongStep) {
   scene.solver.scheme = SchemeKind::kEsdirk32;
   scene.solver.step.reset();
   scene.solver.tolerance = 1e-5;
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   double longest = 0, before = 0;
   while (simulation.status() == RunStatus::kRunning && simulation.now().contact.count == 0) {
@@ -68,7 +68,7 @@ TEST(Touch, ARodFallsOntoAFloorInALongStep) {
 
 // N22: 20 m/s onto a tenth of a millimetre.
 TEST(Touch, AThinSheetStopsAFastRod) {
-  Simulation simulation(contact_scene("thin_sheet"));
+  Simulation simulation(by_method(contact_scene("thin_sheet")));
   simulation.start();
   double lowest = 1, gain = 0;
   while (simulation.status() == RunStatus::kRunning) {
@@ -97,7 +97,7 @@ Fall fall(int cells, double pitch, double modulus, double mu) {
   scene.rods[0].material->shear_modulus = 0.4 * modulus;
   scene.rods[0].surface.friction = mu;
   scene.effects.set(Effect::kFriction, mu > 0);
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   Fall out;
   const double fallen = 1000 * 0.4 * 5.03e-5 * 9.81 * 0.3;  // J
@@ -141,7 +141,7 @@ double pressed_across(double angle) {
     yoke.X_WB = {turn * yoke.X_WB.R, turn * yoke.X_WB.p};
     joint.X_PJ = {turn * joint.X_PJ.R, turn * joint.X_PJ.p};
   }
-  Simulation simulation(scene);
+  Simulation simulation(by_method(scene));
   simulation.start();
   while (simulation.status() == RunStatus::kRunning)
     simulation.advance();
@@ -163,7 +163,7 @@ TEST(Touch, ARodThatBeginsInsideIsNamed) {
   for (const double depth : {0.5, 3.0}) {
     Scene scene = contact_scene("rod_on_floor");
     scene.rods[0].base.at.X_BF.p.z() -= depth * 0.001;
-    Simulation simulation(scene);
+    Simulation simulation(by_method(scene));
     simulation.start();
     EXPECT_EQ(simulation.status(), RunStatus::kFailed) << depth;
     EXPECT_NE(simulation.failure().find("begins inside"), std::string::npos)
