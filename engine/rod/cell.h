@@ -43,7 +43,7 @@ enum class CellLaw {
   kUnloadedExtensible  ///< (6) explicit, likewise
 };
 
-/// Whether n and the moment about a fixed point are the same all along: engine/rod/unloaded_kernel.cpp.
+/// Whether n and the moment about a fixed point are constant: engine/rod/unloaded_kernel.cpp.
 constexpr bool is_unloaded(CellLaw law) {
   return law == CellLaw::kUnloaded || law == CellLaw::kUnloadedExtensible;
 }
