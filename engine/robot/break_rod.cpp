@@ -46,19 +46,21 @@ void add_disks(RobotRod& rod) {
 }
 
 void add_ties(const Scene& scene, std::size_t index, RobotRod& rod) {
+  bool inside = false;
   const auto add = [&](const std::vector<double>& all) {
     for (const double s : all)
       rod.break_at(s);
     rod.tied = true;
+    inside = inside || std::any_of(all.begin(), all.end(), [](double s) { return s < 1; });
   };
   for (const TieSpec& tie : scene.ties) {
     if (tie.rod == static_cast<int>(index)) add(tie.s);
     if (tie.other == static_cast<int>(index)) add(tie.other_s);
   }
-  // of two rods that are fed unlike, what is tied would have to slide
-  if (rod.tied && rod.length_drive)
+  // what is fed in at the base moves along with the rod, places at fractions of its length do not
+  if (inside && rod.length_drive)
     throw std::invalid_argument("the length of rod '" + rod.spec->name +
-                                "' cannot be driven: it is tied to another");
+                                "' cannot be driven: it is tied to another before its tip");
 }
 
 }  // namespace

@@ -38,8 +38,20 @@ enum class CellLaw {
                        ///< field's in (3), (4)
   kExtensibleFluid,    ///< stage v lifted, likewise
   kTendons,            ///< stage v lifted, and tendons are part of the law
-  kTendonsFluid        ///< likewise, with what lies around a rod as in kKirchhoffFluid
+  kTendonsFluid,       ///< likewise, with what lies around a rod as in kKirchhoffFluid
+  kUnloaded,           ///< v = v0, at rest, nothing acts along the rod; sections may vary
+  kUnloadedExtensible  ///< (6) explicit, likewise
 };
+
+/// Whether n and the moment about a fixed point are constant: engine/rod/unloaded_kernel.cpp.
+constexpr bool is_unloaded(CellLaw law) {
+  return law == CellLaw::kUnloaded || law == CellLaw::kUnloadedExtensible;
+}
+
+/// One or four stages are for comparisons; they have no such copy.
+constexpr bool has_unloaded_kernel(int stages) {
+  return stages == 2 || stages == 3;
+}
 
 constexpr bool has_tendons(CellLaw law) {
   return law == CellLaw::kTendons || law == CellLaw::kTendonsFluid;
@@ -134,6 +146,9 @@ struct CellKernel {
   bool (*linearize_wide)(const CellModel&, const CellStage* stages, const NodeState& start,
                          const NodeState& end, double* Y, double* dU);
 };
+
+/// What it is called in `cprsim info` and run.json.
+const char* law_name(CellLaw law);
 
 /// The kernel for this machine. @param stages 1..4.
 const CellKernel& cell_kernel(int stages, CellLaw law);

@@ -239,6 +239,8 @@ const PlanarKernel& CPRSIM_PLANAR_KERNEL(int stages, CellLaw law) {
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
     case CellLaw::kExtensibleGeneral:
+    case CellLaw::kUnloaded:  // of spatial rods only
+    case CellLaw::kUnloadedExtensible:
       break;
   }
   return kKernels<CellLaw::kExtensible>[stages - 1];

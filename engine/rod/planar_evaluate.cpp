@@ -151,6 +151,8 @@ PlanarEvaluate planar_evaluate(int stages, CellLaw law) {
     case CellLaw::kExtensible:
     case CellLaw::kKirchhoffGeneral:  // rotary inertia is a part of planar laws
     case CellLaw::kExtensibleGeneral:
+    case CellLaw::kUnloaded:  // of spatial rods only
+    case CellLaw::kUnloadedExtensible:
       break;
   }
   return kEvaluations<CellLaw::kExtensible>[stages - 1];

@@ -234,6 +234,11 @@ class RodModel {
   virtual TouchingRod* touching() { return nullptr; }
 
   virtual RodResolution resolution() const = 0;
+
+  /// The law of its sections, chosen from those that are compiled each on its own; empty where
+  /// there is but one.
+  virtual const char* section_law(bool /*moving*/) const { return ""; }
+
   virtual int cells() const = 0;  ///< pieces that are swept one after another
   virtual int segments() const = 0;
   virtual int unknown_count() const = 0;

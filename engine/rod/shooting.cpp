@@ -155,16 +155,8 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   fluid_.prepare(section_, sections_, rates, forcing_, track_);
   model_.loaded = fluid_.loaded();
   model_.field = fluid_.field();
-  const bool stretches = extensible_ || forcing.axial_softness > 0;
-  law_ = !stretches      ? CellLaw::kKirchhoff
-         : model_.k == 0 ? CellLaw::kExtensibleStatic
-                         : CellLaw::kExtensible;
-  if (model_.rotary || !varying_.empty()) law_ = generalized(law_);
-  if (fluid_.acts()) law_ = stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
-  if (tendons_) {
-    law_ = fluid_.acts() ? CellLaw::kTendonsFluid : CellLaw::kTendons;
-    tendons_->set(forcing.tendons, forcing.length);
-  }
+  if (tendons_) tendons_->set(forcing.tendons, forcing.length);
+  law_ = law_of(rates.dynamic(), fluid_.acts());
   kernel_ = &cell_kernel(table_->stages, law_);
 
   const double EI = std::max(section_.K_bt.x(), section_.K_bt.y());
@@ -179,6 +171,26 @@ void ShootingRod::prepare(const StageRates& rates, const RodForcing& forcing) {
   noise_ = std::max(1.0, kRoundOff * k * std::pow(L, 4) / (EI * forcing_.tolerance));
   update_stage_inputs();
   choose_segments();
+}
+
+CellLaw ShootingRod::law_of(bool moving, bool surrounded) const {
+  const bool stretches = extensible_ || forcing_.axial_softness > 0;
+  if (tendons_) return surrounded ? CellLaw::kTendonsFluid : CellLaw::kTendons;
+  if (surrounded) return stretches ? CellLaw::kExtensibleFluid : CellLaw::kKirchhoffFluid;
+  const bool pulled_back = forcing_.relaxation > 0;
+  const bool unloaded = !moving && !pulled_back && forcing_.gravity.isZero(0);
+  if (unloaded && has_unloaded_kernel(table_->stages))
+    return stretches ? CellLaw::kUnloadedExtensible : CellLaw::kUnloaded;
+  const bool inertia = (moving && section_.rhoA > 0) || pulled_back;
+  const CellLaw law = !stretches ? CellLaw::kKirchhoff
+                      : inertia  ? CellLaw::kExtensible
+                                 : CellLaw::kExtensibleStatic;
+  const bool general = (moving && options_.rotary_inertia) || !varying_.empty();
+  return general ? generalized(law) : law;
+}
+
+const char* ShootingRod::section_law(bool moving) const {
+  return law_name(law_of(moving, fluid_.acts() || (moving && options_.drag)));
 }
 
 void ShootingRod::update_stage_inputs() {

@@ -111,6 +111,8 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
     return {Method::kShooting, table_->name, cells_, table_->order};
   }
 
+  const char* section_law(bool moving) const override;
+
   int cells() const override { return cells_; }
 
   int segments() const override { return static_cast<int>(segment_first_.size()) - 1; }
@@ -164,6 +166,8 @@ class ShootingRod final : public RodModel, public TouchingRod, private Tensioned
   Vec3 compliance_se(const SectionProperties& section) const;
   CellSection coefficients(const SectionProperties& section) const;
   void list_sections();
+  /// @param surrounded by a fluid, loads along it or a magnetic field
+  CellLaw law_of(bool moving, bool surrounded) const;
   void update_stage_inputs();
   void place_tendons();
   const VecX& tendon_gaps();

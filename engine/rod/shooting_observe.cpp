@@ -173,7 +173,7 @@ void ShootingRod::start_tracks_moving() {
       du[j] = J_r * dw + right_jacobian_derivative(Omega, w) * dOmega;
       const Vec3 phi_j = phi + R * (J_r * dOmega);
       if (lifts_stretch(law_)) dv[j] = vec(d + 3 * S + 3 * j);
-      if (law_ == CellLaw::kExtensibleStatic)
+      if (law_ == CellLaw::kExtensibleStatic || law_ == CellLaw::kUnloadedExtensible)
         dv[j] = vec(coefficients_at(c * S + j).C_se)
                     .cwiseProduct(R.transpose() * (dn + vec(stage[j].n).cross(phi_j)));
       dtau[j] = phi_j.cross(vec(stage[j].tau)) + R * dv[j];

@@ -129,6 +129,7 @@ RodFacts rod_facts(const Robot& robot, const RobotRod& rod, const StepPlan& plan
   const RodResolution resolution = rod.model->resolution();
   f.method = resolution.method;
   f.method_reason = rod.choice.why;
+  f.section_law = rod.model->section_law(dynamic);
   f.rule = resolution.rule;
   f.elements = resolution.elements;
   f.order = resolution.order;

@@ -29,6 +29,7 @@ Simulation::Simulation(Scene scene, std::unique_ptr<FreeBodies> free_bodies,
                        const RodMaker& make_rods) {
   const auto begin = Clock::now();
   parts_ = std::make_unique<Parts>(std::move(scene), std::move(free_bodies), make_rods);
+  parts_->equations.set_instant(0, true, StageRates{});  // what acts on rods is a fact, too
   parts_->facts = problem_facts(parts_->robot, parts_->equations, parts_->plan);
   parts_->statistics.build_seconds = seconds_since(begin);
 }

@@ -61,6 +61,7 @@ struct RodFacts {
   double growth_exponent = 0;  ///< design section 5, at the step used
   Method method = Method::kShooting;
   std::string method_reason;
+  std::string section_law;      ///< chosen for what the scene lists; empty where there is but one
   std::string rule;             ///< of its pieces: "gauss6", "legendre"
   int elements = 0, order = 0;  ///< pieces, and the order of the rule
   int segments = 0, unknowns = 0;

@@ -189,12 +189,22 @@ struct Simulation::Parts {
     return found;
   }
 
+  /// Of the links that make up a body the one that the scene gives a velocity, else the first.
+  std::size_t link_in_motion(const RigidBody& body) const {
+    const auto given = [&](int link) {
+      return scene.bodies[static_cast<std::size_t>(link)].velocity_given;
+    };
+    const auto at = std::find_if(body.links.begin(), body.links.end(), given);
+    return static_cast<std::size_t>(at == body.links.end() ? body.links.front() : *at);
+  }
+
   void start_motion() {
     bool moving = false;
     std::vector<Vec6> motions;
     for (RigidBody& body : robot.bodies) {
-      const BodySpec& link = scene.bodies[static_cast<std::size_t>(body.links.front())];
-      const Pose X = robot.link_pose(static_cast<std::size_t>(body.links.front()));
+      const std::size_t at = link_in_motion(body);
+      const BodySpec& link = scene.bodies[at];
+      const Pose X = robot.link_pose(at);
       const Vec3 w = link.velocity_given ? link.angular_velocity : Vec3(Vec3::Zero());
       const Vec3 v = link.velocity_given ? Vec3(link.linear_velocity + w.cross(body.p - X.p))
                                          : Vec3(Vec3::Zero());

@@ -96,8 +96,8 @@ class PlanarCheck {
       return s.shape == SectionShape::kCircle || s.shape == SectionShape::kAnnulus ||
              s.size.x() == s.size.y();
     };
-    const bool round = is_round(rod.section) &&
-                       std::all_of(rod.sections.begin(), rod.sections.end(), is_round);
+    const bool round =
+        is_round(rod.section) && std::all_of(rod.sections.begin(), rod.sections.end(), is_round);
     const StiffnessSpec& k = rod.stiffness;
     return (round || k.bending_x) && k.bending_x == k.bending_y && (round || k.shear_x) &&
            k.shear_x == k.shear_y;
@@ -239,6 +239,11 @@ void check_planar(Reading& r, const Node& world) {
   // what could not be read has its own error, and would give more here
   if (r.scene.planar_normal && !r.report.failed())
     PlanarCheck(r, *r.scene.planar_normal).run(world);
+  if (!r.scene.planar_normal || r.scene.ties.empty() || r.report.failed()) return;
+  r.scene.planar_normal.reset();
+  r.report.at(Severity::kNote, "W592", r.scene.ties.front().place, 10,
+              "rods that are tied are solved in space: <planar> makes nothing cheaper here, and "
+              "what is not symmetric about the plane may be pushed out of it");
 }
 
 }  // namespace cprsim

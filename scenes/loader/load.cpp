@@ -80,7 +80,8 @@ void read_world(Reading& reading, const Node& world) {
   read_rods(reading, world);
   read_tendons(reading);
   read_ties(reading);
-  read_actions(reading, world);
+  read_actions(reading);
+  read_initial(reading, world);
   read_magnetic_fields(reading, world);
   read_targets(reading);
   read_views(reading, world);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Drives, loads and how the scene begins.
+// Drives, loads and functions of time.
 #include <array>
 #include <set>
 
 #include "scenes/loader/reading.h"
-#include "scenes/loader/start_table.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
 
@@ -293,30 +292,6 @@ void read_load(Reading& r, const Node& node, int scope, const std::vector<bool>&
   r.scene.loads.push_back(std::move(load));
 }
 
-void read_initial(Reading& r, const Node& world) {
-  const Node* simulation = world.child("cprsim:simulation");
-  const Node* initial = simulation ? simulation->child("initial") : nullptr;
-  if (!initial) return;
-  read_start_table(r, *initial);
-  for (const Node* node : initial->all("velocity")) {
-    const Attribute& of = *node->attribute("of");
-    const auto found = r.frames.find_outwards(0, of.value);
-    if (!found || (found->kind != FrameKind::kLink && found->kind != FrameKind::kModel)) {
-      r.report.bad_value("E403", *node, of, "there is no link '" + of.value + "'",
-                         mean(nearest_name(of.value, r.frames.known_names(0))));
-      continue;
-    }
-    const int body = r.frames.body_of(found->index);
-    if (body == kWorld) continue;
-    BodySpec& spec = r.scene.bodies[at(body)];
-    if (spec.velocity_given) r.report.error("E304", *node, "a second velocity of " + spec.name);
-    if (spec.is_static) r.report.error("E310", *node, spec.name + " is static and cannot move");
-    spec.linear_velocity = vec3_of(node->child("linear"), Vec3::Zero());
-    spec.angular_velocity = vec3_of(node->child("angular"), Vec3::Zero());
-    spec.velocity_given = true;
-  }
-}
-
 }  // namespace
 
 bool read_time_function(Reading& r, const Node& node, Profile& profile) {
@@ -338,7 +313,7 @@ bool read_time_function(Reading& r, const Node& node, Profile& profile) {
   return true;
 }
 
-void read_actions(Reading& r, const Node& world) {
+void read_actions(Reading& r) {
   const std::vector<bool> fixed = fixed_bodies(r.scene);
   std::set<std::array<int, 4>> driven;
   for_each_scope(r, [&](int scope, const Node& node) {
@@ -347,7 +322,6 @@ void read_actions(Reading& r, const Node& world) {
     for (const Node* load : node.all("cprsim:load"))
       read_load(r, *load, scope, fixed);
   });
-  read_initial(r, world);
 }
 
 }  // namespace cprsim

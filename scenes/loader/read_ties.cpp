@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ties between rods (engine/model/tie_spec.h).
-#include <cmath>
+#include <algorithm>
 
 #include "scenes/loader/reading.h"
 #include "scenes/loader/suggest.h"
@@ -34,13 +34,12 @@ std::vector<double> places(Reading& r, const Node& node) {
 }
 
 /// What a tied rod cannot have besides; empty if it may be tied.
-std::string obstacle(const Reading& r, int index, std::string& hint) {
+std::string obstacle(const Reading& r, const TieSpec& tie, int index, std::string& hint) {
   const Scene& scene = r.scene;
   const RodSpec& rod = scene.rods[at(index)];
   const Effects& effects = scene.effects;
   const std::string whose = "rod '" + rod.name + "'";
   hint.clear();
-  if (scene.planar_normal) return "ties in a planar scene";
   if (!effects.has(Effect::kExtension) || rod.lacks("extension")) {
     hint = "list <extension/> among the effects";
     return "ties of a rod that cannot stretch, as " + whose;
@@ -51,8 +50,14 @@ std::string obstacle(const Reading& r, int index, std::string& hint) {
       hint = std::string("give the rod <without>") + name + "</without>";
       return "contact of a tied rod, as " + whose;
     }
+  // what is fed in at the base moves along with the rod, but not at a fraction of its length
+  const std::vector<double>& places = index == tie.rod ? tie.s : tie.other_s;
+  const bool inside = std::any_of(places.begin(), places.end(), [](double s) { return s < 1; });
   for (const DriveSpec& drive : scene.drives)
-    if (drive.rod == index) return "a length drive of a tied rod, as " + whose;
+    if (inside && drive.rod == index) {
+      hint = "tie its tip, s = 1";
+      return "a length drive of a rod that is tied along its length, as " + whose;
+    }
   return {};
 }
 
@@ -92,7 +97,7 @@ void check_ties(Reading& r) {
   for (const TieSpec& tie : r.scene.ties)
     for (const int rod : {tie.rod, tie.other}) {
       std::string hint;
-      const std::string what = obstacle(r, rod, hint);
+      const std::string what = obstacle(r, tie, rod, hint);
       if (what.empty()) continue;
       r.report.at(Severity::kError, "E520", tie.place, 10, what + ": not available in this version")
           .suggestion = hint;

@@ -46,9 +46,9 @@ void read_rods(Reading& reading, const Node& world);      // rods and their clas
 void read_tendons(Reading& reading);                      // after the rods
 void read_ties(Reading& reading);                         // likewise
 void read_profiles(Reading& reading, const Node& world);
-void read_actions(Reading& reading,
-                  const Node& world);  // drives, loads, initial shapes and velocities
-void read_targets(Reading& reading);   // after the drives
+void read_actions(Reading& reading);                     // drives, loads
+void read_initial(Reading& reading, const Node& world);  // shapes and velocities to begin with
+void read_targets(Reading& reading);                     // after the drives
 void read_magnetic_fields(Reading& reading, const Node& world);
 void check_fields(Reading& reading, const Node& world);  // that they have something to act on
 void read_views(Reading& reading, const Node& world);    // lights, cameras, surroundings

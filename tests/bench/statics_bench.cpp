@@ -13,10 +13,11 @@ constexpr double kResidual = 1e-8;
 const std::vector<double> kLegs{0.3973263874, 0.3973263874, 0.3997201023,
                                 0.4216240113, 0.4216240113, 0.3997201023};
 
-Scene robot_scene(int cells, bool extensible = true) {
+Scene robot_scene(int cells, bool extensible = true, bool weight = true) {
   Scene scene = stewart_gough(kLegs, false);
   scene.effects.set(Effect::kExtension, extensible);
   scene.effects.set(Effect::kShear, extensible);
+  scene.effects.set(Effect::kGravity, weight);
   scene.solver.points = cells;
   scene.solver.integrator = ArcIntegrator::kGauss6;
   return scene;
@@ -66,6 +67,23 @@ BENCHMARK(static_solve_cold)
     ->Arg(3)
     ->Arg(4)
     ->Arg(6)
+    ->Unit(benchmark::kMicrosecond);
+
+// Without weight nothing acts along the legs: engine/rod/unloaded_kernel.cpp.
+void unloaded_solve_cold(benchmark::State& state) {
+  const Scene scene = robot_scene(static_cast<int>(state.range(0)), state.range(1) != 0, false);
+  Equilibrium equilibrium(scene, kResidual);
+  SolveReport report;
+  for (auto _ : state)
+    report = find_from_straight_legs(equilibrium.equations);
+  if (!report.converged()) state.SkipWithError("no equilibrium found");
+  state.counters["iterations_of_newton"] = report.iterations;
+  count_in_rk4_steps(state);
+}
+
+BENCHMARK(unloaded_solve_cold)
+    ->ArgNames({"cells", "extensible"})
+    ->ArgsProduct({{3, 4, 6}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 
 // To and fro by a thousandth of the length; the last solve ends where the error is known.

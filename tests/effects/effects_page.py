@@ -21,12 +21,12 @@ REPEATS = 5
 
 # effect, scene line, what it adds, case of costed_rods.cpp (or None), what that is compared with, test, source
 EFFECTS = [
-    ("bending, torsion", "always there", "the rod", "none, at rest", None, "tests/laws/cantilever_test.cpp",
-     "engine/rod/cell_kernel.cpp"),
+    ("bending, torsion", "always there", "the rod, at rest, unloaded", "none, at rest", None,
+     "tests/laws/cantilever_test.cpp", "engine/rod/unloaded_kernel.cpp"),
     ("motion", 'mode="dynamic"', "inertia of the centreline", "none, moving", "none, at rest",
-     "tests/laws/free_vibration_test.cpp", "engine/time/scheme.cpp"),
+     "tests/laws/free_vibration_test.cpp", "engine/rod/cell_kernel.cpp"),
     ("gravity", "<gravity/>", "a constant force", "gravity", "none, at rest", "tests/laws/cantilever_test.cpp",
-     "engine/rod/shooting.cpp"),
+     "engine/rod/cell_kernel.cpp"),
     ("extension", "<extension/>", "stretch, at rest", "extension, at rest", "none, at rest",
      "tests/laws/cantilever_test.cpp", "engine/rod/cell_kernel.cpp"),
     ("", "", "stretch, in motion", "extension, moving", "none, moving", "tests/laws/free_vibration_test.cpp",

@@ -34,6 +34,29 @@ Snapshot run(const Scene& scene) {
   return end;
 }
 
+// Links that are welded together move as one, whichever of them the scene gives the velocity.
+TEST(Welded, LinksTakeTheVelocityOfAnyOfThem) {
+  const Vec3 v(0.3, -0.2, 0.1), omega(1, 2, -0.5), apart(0.2, 0.1, -0.3);
+  std::vector<Snapshot> ends;
+  for (const std::size_t given : {0U, 1U}) {
+    Scene scene;
+    scene.bodies = {lump("a", {}, kMass, kInertia),
+                    lump("b", {Mat3::Identity(), apart}, kMass, kInertia)};
+    scene.joints = {joint_at(scene, JointKind::kFixed, Vec3::Zero(), 0, 1)};
+    BodySpec& body = scene.bodies[given];
+    body.velocity_given = true;
+    body.linear_velocity = given == 0 ? v : Vec3(v + omega.cross(apart));
+    body.angular_velocity = omega;
+    move_for(scene, 0.1, 1e-9);
+    Simulation simulation(scene);
+    simulation.start();
+    EXPECT_LT((simulation.now().bodies[0].linear_velocity - v).norm(), 1e-12);
+    ends.push_back(run(scene));
+  }
+  EXPECT_GT(ends[0].bodies[0].X_WB.p.norm(), 0.01);
+  EXPECT_LT((ends[0].bodies[1].X_WB.p - ends[1].bodies[1].X_WB.p).norm(), 1e-12);
+}
+
 // (I + m (p / 2 pi)²) q_tt = M
 TEST(Screw, TurnsAndAdvancesUnderATorque) {
   constexpr double kPitch = 0.02, kTorque = 1e-3, kTime = 0.5;

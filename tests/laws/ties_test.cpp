@@ -72,6 +72,31 @@ TEST_P(Ties, ShareASmallLoadAsBeamsDo) {
   EXPECT_NEAR(base.force.z(), VN[1], 1e-4 * std::abs(VN[1]));
 }
 
+// A rod that is fed in to another length and tied at its tip is a rod of that length.
+TEST_P(Ties, HoldTheTipOfARodThatIsFedIn) {
+  constexpr double kFed = 0.37;
+  Scene fed = finely(pair({1}), GetParam());
+  fed.ties[0].offset = Vec3(0, kApart, 0);
+  add_load(fed, 1, {0.2, 0.1, 0});
+  Scene cut = fed;
+  cut.rods[0].length = kFed;
+  DriveSpec drive;
+  drive.rod = 0;
+  drive.quantity = DriveQuantity::kLength;
+  ProfileTerm term;
+  term.value = kFed;
+  drive.profile.terms.push_back(term);
+  fed.drives.push_back(drive);
+  const Equilibrium a(fed, 1e-13), b(cut, 1e-13);
+  ASSERT_TRUE(a.report.converged() && b.report.converged());
+  EXPECT_GT((b.rod().points.back().position - Vec3(0, 0, kFed)).norm(), 0.01);
+  for (const std::size_t rod : {0U, 1U})
+    for (std::size_t k = 0; k < b.rod(rod).points.size(); ++k)
+      EXPECT_LT((a.rod(rod).points[k].position - b.rod(rod).points[k].position).norm(),
+                1e-9 * kLength)
+          << rod << ", " << k;
+}
+
 /// Stiffnesses and mass of a steel rod, multiplied.
 RodSpec multiple(double by) {
   RodSpec rod = steel_rod(kLength, kRadius);

@@ -233,6 +233,57 @@ TEST(InitialVelocities, AreGivenInWorldAxes) {
   EXPECT_EQ(result.scene->bodies[1].angular_velocity, Vec3(0, 0, 4));
 }
 
+TEST(InitialVelocities, NameWhatWeldsALinkThatCannotMove) {
+  std::string text = scene_text();
+  text.replace(text.find("<duration>"), 0,
+               "<initial><velocity of='robot::base'><linear>1 2 3</linear></velocity></initial>");
+  const LoadResult result = load_text(text);
+  ASSERT_EQ(error_codes(result), std::vector<std::string>{"E512"});
+  const std::string told = to_text(result.diagnostics);
+  EXPECT_NE(told.find("joint 'robot::ground', test.xml:9"), std::string::npos) << told;
+  EXPECT_NE(told.find("leave <velocity> out"), std::string::npos) << told;
+}
+
+TEST(InitialVelocities, DoNothingAtRestWhichIsTold) {
+  std::string text = scene_text();
+  const std::string duration = "<duration>1</duration>";
+  text.replace(text.find(duration), duration.size(),
+               "<initial><velocity of='robot::plate'><linear>1 2 3</linear></velocity></initial>");
+  text.replace(text.find("dynamic"), 7, "static");
+  const LoadResult result = load_text(text);
+  EXPECT_TRUE(result.scene);
+  EXPECT_TRUE(has_code(result, "W513"));
+}
+
+TEST(Ties, AreSolvedInSpaceAndSaySo) {
+  std::string text = scene_text(
+      "<cprsim:rod name='other' class='steel'><base attached_to='base' joint='fixed'>"
+      "<pose>0.01 0 0 0 0 0</pose></base><length>0.4</length></cprsim:rod>"
+      "<cprsim:tie name='t' rod='leg' other='other'><s>0.5 1</s></cprsim:tie>");
+  text.replace(text.find("<gravity/>"), 0, "<extension/>");
+  text.replace(text.find("</duration>") + 11, 0, "<planar normal='0 1 0'/>");
+  const LoadResult result = load_text(text);
+  ASSERT_TRUE(result.scene) << to_text(result.diagnostics);
+  EXPECT_FALSE(result.scene->planar_normal);
+  EXPECT_TRUE(has_code(result, "W592"));
+}
+
+TEST(Ties, OfAFedRodAreAtItsTip) {
+  for (const auto& [s, codes] : {std::pair<const char*, std::vector<std::string>>{"1", {}},
+                                 {"0.5", {"E520"}},
+                                 {"0.5 1", {"E520"}}}) {
+    std::string text = scene_text(
+        std::string("<cprsim:rod name='other' class='steel'><base attached_to='base' "
+                    "joint='fixed'/><length>0.4</length></cprsim:rod><cprsim:tie name='t' "
+                    "rod='leg' other='other'><s>") +
+        s +
+        "</s></cprsim:tie><cprsim:drive rod='leg' quantity='length'><constant value='0.4'/>"
+        "</cprsim:drive>");
+    text.replace(text.find("<gravity/>"), 0, "<extension/>");
+    EXPECT_EQ(error_codes(load_text(text)), codes) << s;
+  }
+}
+
 TEST(Includes, BringAModelUnderItsNameAndPose) {
   const auto folder = std::filesystem::temp_directory_path() / "cprsim_include_test";
   std::filesystem::create_directories(folder / "post");
@@ -275,7 +326,7 @@ TEST(Lax, TurnsRejectedSdfElementsIntoWarningsOnly) {
   EXPECT_EQ(error_codes(load_text(
                 scene_text("<cprsim:rod name='other' class='steel'><base attached_to='base' "
                            "joint='fixed'/><length>0.4</length></cprsim:rod><cprsim:tie name='t' "
-                           "rod='leg' other='other'><s>1</s></cprsim:tie>"
+                           "rod='leg' other='other'><s>0.5</s></cprsim:tie>"
                            "<cprsim:drive rod='leg' quantity='length'><constant value='0.4'/>"
                            "</cprsim:drive>"),
                 lax)),

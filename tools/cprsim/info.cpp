@@ -10,6 +10,7 @@
 #include "tools/cprsim/advisor.h"
 #include "tools/cprsim/build_simulation.h"
 #include "tools/cprsim/commands.h"
+#include "tools/cprsim/estimates.h"
 #include "tools/cprsim/exit_code.h"
 #include "tools/cprsim/names.h"
 #include "tools/cprsim/scene_options.h"
@@ -36,7 +37,8 @@ bool alike(const RodFacts& a, const RodFacts& b) {
         r.thermal_number, r.rotary_number};
   };
   const auto pieces = [](const RodFacts& r) {
-    return std::tuple(r.method, r.method_reason, r.rule, r.elements, r.order, r.segments);
+    return std::tuple(r.method, r.method_reason, r.section_law, r.rule, r.elements, r.order,
+                      r.segments);
   };
   return numbers(a) == numbers(b) && pieces(a) == pieces(b);
 }
@@ -161,6 +163,38 @@ std::string joints_text(const Scene& scene) {
   return text;
 }
 
+/// Each effect's absence, or presence, that something is known of.
+std::string estimates_text(const EffectEstimates& estimates) {
+  std::string text;
+  std::string unknown;
+  for (const EffectEstimate& one : estimates.effects) {
+    if (!one.unknown.empty()) {
+      unknown += std::string(" ") + effect_name(one.effect);
+      continue;
+    }
+    text += fmt::format("  {:<8} {:<15} {:>9.2g}  {}\n", one.listed ? "without" : "with",
+                        effect_name(one.effect), one.change, one.by);
+  }
+  if (text.empty()) return {};
+  return fmt::format("estimated change of {}, over the {:.6g} m of the longest rod\n",
+                     estimates.watched, estimates.length) +
+         text + (unknown.empty() ? "" : "  not known without a run:" + unknown + "\n");
+}
+
+Json estimates_json(const EffectEstimates& estimates) {
+  Json json = {
+      {"watched", estimates.watched}, {"length", estimates.length}, {"effects", Json::array()}};
+  for (const EffectEstimate& one : estimates.effects) {
+    Json entry = {{"effect", effect_name(one.effect)}, {"listed", one.listed}};
+    if (one.unknown.empty())
+      entry.update({{"change", one.change}, {"by", one.by}});
+    else
+      entry["unknown"] = one.unknown;
+    json["effects"].push_back(entry);
+  }
+  return json;
+}
+
 std::string rod_text(const Scene& scene, const RodGroup& group) {
   const RodFacts& rod = *group.facts;
   std::string text = fmt::format("rod {}\n", fmt::join(group.names, ", "));
@@ -171,6 +205,7 @@ std::string rod_text(const Scene& scene, const RodGroup& group) {
                       rod.bending_x, rod.bending_y, rod.torsion, rod.axial, rod.shear_x);
   text += fmt::format("  {}; {} unknowns, growth exponent {:.3g}; {}\n", pieces_text(rod),
                       rod.unknowns, rod.growth_exponent, rod.method_reason);
+  if (!rod.section_law.empty()) text += fmt::format("  sections: {}\n", rod.section_law);
   for (const AdviceLine& line : advise(scene, rod)) {
     text += fmt::format("  {:<15} {:<18} {:>9.2g}  {}\n", effect_name(line.effect), line.formula,
                         line.number, to_string(line.advice));
@@ -191,6 +226,7 @@ Json rod_json(const Scene& scene, const RodFacts& rod) {
                {"growth_exponent", rod.growth_exponent},
                {"method", method_name(rod.method)},
                {"method_reason", rod.method_reason},
+               {"section_law", rod.section_law},
                {"rule", rod.rule},
                {"elements", rod.elements},
                {"order", rod.order},
@@ -207,7 +243,7 @@ Json rod_json(const Scene& scene, const RodFacts& rod) {
   return json;
 }
 
-Json to_json(const Scene& scene, const ProblemFacts& facts) {
+Json to_json(const Scene& scene, const ProblemFacts& facts, const EffectEstimates& estimates) {
   Json json = {{"schema", "cprsim-info/1"},
                {"name", scene.name},
                {"hash", scene.hash},
@@ -219,6 +255,7 @@ Json to_json(const Scene& scene, const ProblemFacts& facts) {
                {"body_unknowns", facts.body_unknowns},
                {"constraint_unknowns", facts.constraint_unknowns},
                {"effects", Json::object()},
+               {"estimates", estimates_json(estimates)},
                {"joints", Json::array()},
                {"rods", Json::array()},
                {"channels", Json::array()}};
@@ -250,7 +287,9 @@ int info_command(const Words& words) {
       "cprsim info",
       "Tells what is in a scene and what follows from it, without simulating: stiffness, mass, "
       "first\n"
-      "frequency, growth exponents, the effects that are on and those that would matter.\n\n"
+      "frequency, growth exponents, the effects that are on, those that would matter, and what "
+      "leaving\n"
+      "one out or adding it is estimated to change, from the equilibrium at the start.\n\n"
       "Examples\n"
       "  cprsim info scene.xml\n"
       "  cprsim info scene.xml --step 0.001 --json");
@@ -266,11 +305,13 @@ int info_command(const Words& words) {
   try {
     const auto simulation = build_simulation(scene);
     const ProblemFacts& facts = simulation->facts();
-    if (console.json()) write_to_stdout(to_json(scene, facts).dump(2) + "\n");
+    const EffectEstimates estimates = estimate_effects(path, options, scene, facts);
+    if (console.json()) write_to_stdout(to_json(scene, facts, estimates).dump(2) + "\n");
     console.say(contents_text(scene) + solver_text(facts) + effects_text(scene) +
                 joints_text(scene) + ties_text(scene));
     for (const RodGroup& group : groups_of(facts))
       console.say(rod_text(scene, group));
+    console.say(estimates_text(estimates));
   } catch (const std::invalid_argument& error) {
     console.error(path + ": " + error.what());
     return kExitSceneInvalid;

@@ -74,6 +74,7 @@ Json rod_json(const RodFacts& rod) {
           {"growth_exponent", rod.growth_exponent},
           {"method", method_name(rod.method)},
           {"method_reason", rod.method_reason},
+          {"section_law", rod.section_law},
           {"rule", rod.rule},
           {"elements", rod.elements},
           {"order", rod.order},

@@ -88,20 +88,6 @@ const SweepSpec* sweep_of(const Scene& scene, const SweepOptions& options) {
   throw UsageError("--sweep: " + not_one_of(options.sweep, "a sweep of the scene", names));
 }
 
-/// Where people look: the link that most rods hold, else the tip of the first rod.
-std::string default_channel(const Scene& scene) {
-  std::vector<int> held(scene.bodies.size(), 0);
-  for (const RodSpec& rod : scene.rods)
-    if (rod.tip.joint != EndJoint::kFree && rod.tip.at.body >= 0)
-      ++held[static_cast<std::size_t>(rod.tip.at.body)];
-  const auto most = std::max_element(held.begin(), held.end());
-  if (most != held.end() && *most > 0)
-    return scene.bodies[static_cast<std::size_t>(most - held.begin())].name + ".position";
-  if (!scene.rods.empty()) return scene.rods.front().name + ".tip.position";
-  if (!scene.bodies.empty()) return scene.bodies.back().name + ".position";
-  throw UsageError("nothing in the scene moves; name a channel with --measure");
-}
-
 SweepMeasureName measure_named(const Scene& scene, const std::string& name, Norm norm) {
   SweepMeasureName measure{name, "", {}, norm};
   for (const Channel& channel : find_channels(scene, name)) {
@@ -233,6 +219,19 @@ void add_references(const SweepOptions& options, const SweepSpec* spec, SweepPla
 }
 
 }  // namespace
+
+std::string default_channel(const Scene& scene) {
+  std::vector<int> held(scene.bodies.size(), 0);
+  for (const RodSpec& rod : scene.rods)
+    if (rod.tip.joint != EndJoint::kFree && rod.tip.at.body >= 0)
+      ++held[static_cast<std::size_t>(rod.tip.at.body)];
+  const auto most = std::max_element(held.begin(), held.end());
+  if (most != held.end() && *most > 0)
+    return scene.bodies[static_cast<std::size_t>(most - held.begin())].name + ".position";
+  if (!scene.rods.empty()) return scene.rods.front().name + ".tip.position";
+  if (!scene.bodies.empty()) return scene.bodies.back().name + ".position";
+  throw UsageError("nothing in the scene moves; name a channel with --measure");
+}
 
 std::vector<std::string> SweepPlan::channels() const {
   std::vector<std::string> all;

@@ -35,6 +35,9 @@ struct SweepOptions {
   std::vector<std::pair<std::string, std::string>> given() const;
 };
 
+/// Where people look: the link that most rods hold, else the tip of the first rod.
+std::string default_channel(const Scene& scene);
+
 std::variant<SweepOptions, int> parse_sweep_options(const Words& words);
 
 /// One run to be made.

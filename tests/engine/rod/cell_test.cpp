@@ -96,6 +96,7 @@ Cell make_cell(const Case& c, unsigned seed) {
     put(s.v0, Vec3::UnitZ() + 0.2 * numbers.vec3());
     put(s.v, Vec3::UnitZ() + 0.2 * numbers.vec3());
     Eigen::Map<RowMat3>{s.R_start} = R * exp_so3(0.5 * numbers.vec3());
+    if (is_unloaded(c.law)) put(s.b, Vec3::Zero());
   }
   cell.sections.assign(cell.stages.size(), M);
   cell.fluid.assign(immersed(c.law) ? cell.stages.size() : 0, FluidSection{});
@@ -202,6 +203,9 @@ std::vector<Case> cases() {
             if (!rotary && body_rates) continue;
             all.push_back({integrator, law, rotary, inertia, body_rates});
           }
+  for (ArcIntegrator integrator : {ArcIntegrator::kGauss4, ArcIntegrator::kGauss6})
+    for (CellLaw law : {CellLaw::kUnloaded, CellLaw::kUnloadedExtensible})
+      all.push_back({integrator, law, false, false, false});
   return all;
 }
 
@@ -235,6 +239,32 @@ TEST(Cell, NarrowAndWideGiveTheSameBits) {
       EXPECT_EQ(narrow.dU.col(i), wide.dU.col(j)) << c.name() << ", column " << i;
     }
   }
+}
+
+// Poses alone are integrated; what the other law finds for n and m follows from them.
+TEST(Cell, WithoutLoadsFindsWhatTheOtherLawsFind) {
+  for (ArcIntegrator integrator : {ArcIntegrator::kGauss4, ArcIntegrator::kGauss6})
+    for (const auto& [unloaded, other] :
+         {std::pair{CellLaw::kUnloaded, CellLaw::kKirchhoff},
+          std::pair{CellLaw::kUnloadedExtensible, CellLaw::kExtensibleStatic}})
+      for (int columns : {kNarrow, kWide}) {
+        const Case c{integrator, unloaded, false, false, false};
+        SCOPED_TRACE(c.name());
+        Cell a = make_cell(c, 13), b = a;
+        b.kernel = &cell_kernel(arc_tableau(integrator).stages, other);
+        const NodeState at_a = a.evaluate(), at_b = b.evaluate();
+        const Linearized of_a = linearize(a, at_a, start_columns(columns, 5)),
+                         of_b = linearize(b, at_b, start_columns(columns, 5));
+        constexpr double kRoundOff = 3e-14;  // of numbers near 1, columns near 10
+        EXPECT_LT((rotation_of(at_a) - rotation_of(at_b)).norm(), kRoundOff);
+        EXPECT_LT((position_of(at_a) - position_of(at_b)).norm(), kRoundOff);
+        EXPECT_EQ(force_of(at_a), force_of(at_b));
+        EXPECT_LT((moment_of(at_a) - moment_of(at_b)).norm(), kRoundOff);
+        for (int i = 0; i < a.lifted(); ++i)
+          EXPECT_NEAR(a.residual(i), b.residual(i), kRoundOff);
+        EXPECT_LT((of_a.Y - of_b.Y).cwiseAbs().maxCoeff(), kRoundOff * of_b.Y.norm());
+        EXPECT_LT((of_a.dU - of_b.dU).cwiseAbs().maxCoeff(), kRoundOff * of_b.dU.norm());
+      }
 }
 
 TEST(Cell, PaddingStaysZero) {
@@ -273,6 +303,10 @@ TEST(Cell, NanIsReportedAsSingular) {
   cell.stages[0].w[0] = std::nan("");
   const NodeState end = cell.evaluate();
   EXPECT_FALSE(linearize(cell, end, start_columns(kNarrow, 5)).regular);
+  Cell unloaded = make_cell({ArcIntegrator::kGauss4, CellLaw::kUnloaded, false, false, false}, 1);
+  unloaded.stages[0].w[0] = std::nan("");
+  const NodeState unloaded_end = unloaded.evaluate();
+  EXPECT_FALSE(linearize(unloaded, unloaded_end, start_columns(kNarrow, 5)).regular);
 }
 
 }  // namespace
