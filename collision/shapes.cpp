@@ -4,6 +4,8 @@
 #include <LinearMath/btConvexHullComputer.h>
 #include <btBulletCollisionCommon.h>
 
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -136,6 +138,25 @@ Shapes::Shapes(const std::vector<MeshSpec>& meshes)
 
 Shapes::~Shapes() = default;
 
+/// Bullet has no shape with a hole: wedges around it, whose corners lie on both cylinders.
+btCollisionShape* Shapes::tube(const ShapeSpec& spec) {
+  constexpr int kWedges = 48;
+  const auto half = static_cast<float>(0.5 * spec.size.y());
+  auto whole = std::make_unique<btCompoundShape>();
+  for (int i = 0; i < kWedges; ++i) {
+    MeshSpec wedge;
+    for (int side = 0; side < 2; ++side) {
+      const double angle = 2 * std::numbers::pi * (i + side) / kWedges;
+      for (const double radius : {spec.size.x(), spec.size.z()})
+        for (const float z : {-half, half})
+          wedge.positions.emplace_back(static_cast<float>(radius * std::cos(angle)),
+                                       static_cast<float>(radius * std::sin(angle)), z);
+    }
+    whole->addChildShape(btTransform::getIdentity(), store_->keep(make_hull(wedge)));
+  }
+  return store_->keep(std::move(whole));
+}
+
 btCollisionShape* Shapes::empty() {
   return store_->keep(std::make_unique<btEmptyShape>());
 }
@@ -144,6 +165,7 @@ btCollisionShape* Shapes::for_obstacle(const ShapeSpec& spec) {
   if (spec.kind == ShapeKind::kPlane)
     return store_->keep(
         std::make_unique<btStaticPlaneShape>(to_bullet(spec.normal.normalized()), 0));
+  if (spec.kind == ShapeKind::kTube) return tube(spec);
   if (spec.kind != ShapeKind::kMesh) return store_->keep(make_convex(spec));
 
   const MeshSpec& mesh = meshes_.at(static_cast<std::size_t>(spec.mesh));
@@ -166,7 +188,8 @@ btCollisionShape* Shapes::for_free_body(const BodySpec& body, const Pose& X_BG) 
     btCollisionShape* child =
         collider.shape.kind == ShapeKind::kMesh
             ? store_->keep(make_hull(meshes_.at(static_cast<std::size_t>(collider.shape.mesh))))
-            : store_->keep(make_convex(collider.shape));
+        : collider.shape.kind == ShapeKind::kTube ? tube(collider.shape)
+                                                  : store_->keep(make_convex(collider.shape));
     compound->addChildShape(to_bullet(scaled(X_BG.inverse() * collider.X_BC, kUnitsPerMetre)),
                             child);
   }

@@ -36,6 +36,8 @@ class Shapes {
   btCollisionShape* for_free_body(const BodySpec& body, const Pose& X_BG);
 
  private:
+  btCollisionShape* tube(const ShapeSpec& spec);
+
   struct Store;
   const std::vector<MeshSpec>& meshes_;  // read while building only
   std::unique_ptr<Store> store_;

@@ -129,6 +129,13 @@ TriMesh make_box(const Vec3& size, std::array<std::uint8_t, 4> color) {
   return mesh;
 }
 
+/// Inner side, bottom, outer side, top: corners are sharp.
+Profile2 tube_profile(double radius, double inner, double length) {
+  const double h = 0.5 * length;
+  return {{inner, h, -1, 0},  {inner, -h, -1, 0}, {inner, -h, 0, -1}, {radius, -h, 0, -1},
+          {radius, -h, 1, 0}, {radius, h, 1, 0},  {radius, h, 0, 1},  {inner, h, 0, 1}};
+}
+
 TriMesh make_plane(const ShapeSpec& shape, std::array<std::uint8_t, 4> color) {
   TriMesh mesh;
   const Vec3 n = shape.normal.norm() > 0 ? Vec3(shape.normal.normalized()) : Vec3::UnitZ();
@@ -188,6 +195,8 @@ TriMesh make_shape(const ShapeSpec& shape, const Look& look, const std::vector<M
       return make_ellipsoid(Vec3::Constant(size.x()), kSides, color);
     case ShapeKind::kCylinder:
       return revolve(cylinder_profile(size.x(), size.y()), kSides, color);
+    case ShapeKind::kTube:
+      return revolve(tube_profile(size.x(), size.z(), size.y()), kSides, color);
     case ShapeKind::kCapsule:
       return revolve(capsule_profile(size.x(), size.y()), kSides, color);
     case ShapeKind::kCone:

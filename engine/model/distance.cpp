@@ -39,7 +39,7 @@ Distance to_round_box(const Vec3& b, double r, const Vec3& x) {
   return out;
 }
 
-using Profile2 = std::array<Vec2, 4>;  // corners (rho, z), counter-clockwise; the last may repeat
+using Profile2 = std::array<Vec2, 5>;  // corners (rho, z), counter-clockwise; the last may repeat
 
 struct PlaneDistance {
   double d = 0;
@@ -147,9 +147,13 @@ Distance distance_to(const ShapeSpec& shape, const Vec3& x) {
     case ShapeKind::kCapsule:
       return to_round_box({0, 0, b}, a, x);
     case ShapeKind::kCylinder:
-      return to_revolution({Vec2(0, -b), Vec2(a, -b), Vec2(a, b), Vec2(0, b)}, x);
+      return to_revolution({Vec2(0, -b), Vec2(a, -b), Vec2(a, b), Vec2(0, b), Vec2(0, b)}, x);
     case ShapeKind::kCone:
-      return to_revolution({Vec2(0, -b), Vec2(a, -b), Vec2(0, b), Vec2(0, b)}, x);
+      return to_revolution({Vec2(0, -b), Vec2(a, -b), Vec2(0, b), Vec2(0, b), Vec2(0, b)}, x);
+    case ShapeKind::kTube: {
+      const double i = shape.size.z();
+      return to_revolution({Vec2(i, -b), Vec2(a, -b), Vec2(a, b), Vec2(i, b), Vec2(i, -b)}, x);
+    }
     case ShapeKind::kEllipsoid:
       return to_ellipsoid(shape.size, x);
     default:

@@ -28,14 +28,15 @@ enum class ShapeKind {
   kCapsule,
   kCone,
   kEllipsoid,
+  kTube,
   kPlane,
   kMesh
 };
 
-/// One geometric primitive in its own frame, centred; axes of cylinder, capsule and cone along z.
-/// size means: box edge lengths; sphere (r,_,_); cylinder, capsule, cone (r, length, _), a
-/// capsule's length without its caps, a cone's apex at +length/2; ellipsoid semi-axes; plane (x,y
-/// extent, _).
+/// One geometric primitive in its own frame, centred; axes of cylinder, capsule, cone, tube along
+/// z. size means: box edge lengths; sphere (r,_,_); cylinder, capsule, cone (r, length, _), a
+/// capsule's length without its caps, a cone's apex at +length/2; ellipsoid semi-axes; tube
+/// (outer r, length, inner r); plane (x,y extent, _).
 struct ShapeSpec {
   ShapeKind kind = ShapeKind::kEmpty;
   Vec3 size = Vec3::Zero();

@@ -87,6 +87,11 @@ MassProperties mass_properties(const ShapeSpec& shape, const std::vector<MeshSpe
       const double m = density * pi * r * r * l, across = m * (r * r / 4 + l * l / 12);
       return of_principal(m, 0, {across, across, m * r * r / 2});
     }
+    case ShapeKind::kTube: {
+      const double i = shape.size[2], m = density * pi * (r * r - i * i) * l;
+      const double squares = r * r + i * i, across = m * (squares / 4 + l * l / 12);
+      return of_principal(m, 0, {across, across, m * squares / 2});
+    }
     case ShapeKind::kCapsule:
       return capsule(r, l, density);
     case ShapeKind::kCone: {

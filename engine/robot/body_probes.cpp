@@ -110,6 +110,11 @@ std::vector<BodyProbe> probes_of(const ColliderSpec& collider,
       list.rim(-0.5 * size.y() + round, size.x());
       list.rim(0.5 * size.y() - round, size.x());
       break;
+    case ShapeKind::kTube:
+      for (const double radius : {size.x(), size.z()})
+        for (const double side : {-1, 1})
+          list.rim(side * (0.5 * size.y() - round), radius);
+      break;
     case ShapeKind::kCone:
       list.rim(-0.5 * size.y() + round, size.x());
       list.point({0, 0, 0.5 * size.y()});
@@ -147,6 +152,7 @@ std::pair<Vec3, double> ball_around(const ColliderSpec& collider,
       radius = size.x() + 0.5 * size.y();
       break;
     case ShapeKind::kCylinder:
+    case ShapeKind::kTube:
     case ShapeKind::kCone:
       radius = std::hypot(size.x(), 0.5 * size.y());
       break;
@@ -179,6 +185,8 @@ double thickness_of(const ShapeSpec& shape, const std::vector<MeshSpec>& meshes)
     case ShapeKind::kCylinder:
     case ShapeKind::kCone:
       return std::min(2 * size.x(), size.y());
+    case ShapeKind::kTube:
+      return std::min(size.x() - size.z(), size.y());
     case ShapeKind::kEllipsoid:
       return 2 * size.minCoeff();
     case ShapeKind::kMesh: {

@@ -218,7 +218,7 @@ bool RodContacts::revise(int round) {
 
 bool RodContacts::ease() {
   constexpr int kEasedSteps = 20;
-  if (left_ == 0) return false;  // statics is led to where it rests
+  if (left_ == 0 && !lagged_) return false;  // statics is led to where it rests
   eased_ = kEasedSteps;
   bool any = bodies_.ease(kEasedSteps);
   for (Rod& rod : rods_)

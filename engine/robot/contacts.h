@@ -75,6 +75,13 @@ class RodContacts {
   /// is smooth: no less dissipative than Coulomb's law, and easier to solve.
   void lag_friction(bool on) { lagged_ = on; }
 
+  /// While friction is bounded: by what presses now. @return whether that is another bound
+  bool bound_by_pressure();
+
+  /// After solves with bounded friction: what holds with less than its bound sticks, the rest is
+  /// about to slip, by Coulomb's law from here on.
+  void grip_what_rests();
+
   /// What the step asks of contacts, whichever guess they came with.
   void refresh();
 

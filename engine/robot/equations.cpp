@@ -164,6 +164,15 @@ void Equations::set_relaxation(double drag) {
   prepare_rods();
 }
 
+double Equations::limpness() const {
+  double limp = 1;
+  for (const RobotRod& rod : robot_.rods) {
+    const double weight = rod.section.weighing_mass() * robot_.gravity.norm();
+    limp = std::max(limp, weight * std::pow(rod.length, 3) / rod.section.K_bt.head<2>().maxCoeff());
+  }
+  return limp;
+}
+
 void Equations::hold_marked(double drag) {
   drag_ = drag;
   prepare_rods();

@@ -93,6 +93,9 @@ class Equations final : public Problem {
 
   void recall() override { set_unknowns(remembered_); }
 
+  /// How much heavier the limpest rod is than what its bending stiffness bears; 1 and more.
+  double limpness() const;
+
   void set_fraction(double fraction) override;
   void set_relaxation(double drag) override;
   /// The same towards what was last marked.

@@ -94,9 +94,9 @@ SolveReport hold_shape(Equations& equations, const SolveOptions& options) {
   const RobotUnknowns given = equations.unknowns();
   SolveReport total;
   equations.hold_bodies(true);
-  equations.set_relaxation(kHold);
+  equations.set_relaxation(kHold * equations.limpness());
   // too stiff springs resist what the ends demand
-  for (double hold = kHold; hold >= kLeast; hold *= 0.1) {
+  for (double hold = kHold * equations.limpness(); hold >= kLeast; hold *= 0.1) {
     equations.set_unknowns(given);
     equations.hold_marked(hold);
     add(total, newton(equations, options));
@@ -109,21 +109,39 @@ SolveReport hold_shape(Equations& equations, const SolveOptions& options) {
 
 SolveReport relax_from_shape(RodContacts& contacts, Equations& equations,
                              const SolveOptions& options) {
-  constexpr int kMostSteps = 1000;
+  constexpr int kMostSteps = 1000, kMostReturns = 5, kMostPasses = 8;
   // bodies stay where they are while rods come loose
   constexpr double kNoDrag = 1e-3, kLoose = 1e3;
   SolveOptions inner = options;
   inner.tolerance = std::max(options.tolerance, 1e-6);
   SolveReport total;
+  int returns = 0;
+  const auto solve = [&](const SolveOptions& settings) {
+    SolveReport part = newton(equations, settings);
+    if (!part.converged() && contacts.ease()) {
+      // past the kinks between stick and slip
+      SolveOptions bold = settings;
+      bold.bold = true;
+      add(part, newton(equations, bold));
+    }
+    return settle_contacts(contacts, equations, settings, part);
+  };
+  // friction is bounded by what pressed a pass before, until that is what presses
   const auto settle = [&](const SolveOptions& settings) {
-    const SolveReport part =
-        settle_contacts(contacts, equations, settings, newton(equations, settings));
+    SolveReport part = solve(settings);
     add(total, part);
+    for (int pass = 0; part.converged() && pass < kMostPasses && contacts.bound_by_pressure();
+         ++pass) {
+      part = solve(settings);
+      add(total, part);
+    }
     return part.converged() && !contacts.leapt();
   };
   equations.accept_contacts();
-  double drag = kHold;
-  for (int step = 0; step < kMostSteps && drag <= kHold; ++step) {
+  const double hold = kHold * equations.limpness();
+  contacts.lag_friction(true);
+  double drag = hold;
+  for (int step = 0; step < kMostSteps && drag <= hold; ++step) {
     const RobotUnknowns from = equations.unknowns();
     equations.hold_bodies(drag > kLoose);
     equations.evaluate();
@@ -140,12 +158,17 @@ SolveReport relax_from_shape(RodContacts& contacts, Equations& equations,
     if (drag > kNoDrag) continue;
     equations.set_relaxation(0);
     contacts.begin_step();
-    if (settle(options)) break;
+    if (settle(options)) {
+      contacts.grip_what_rests();
+      break;
+    }
     equations.set_unknowns(from);
     drag = 100 * kNoDrag;
+    if (total.status == SolveStatus::kWorkLimit || ++returns == kMostReturns) break;
   }
   equations.hold_bodies(false);
   equations.set_relaxation(0);
+  contacts.lag_friction(false);
   if (total.converged() && drag > kNoDrag) total.status = SolveStatus::kIterationLimit;
   total.stage = SolveStage::kRelaxation;
   return total;

@@ -26,7 +26,9 @@ SolveReport hold_shape(Equations& equations, const SolveOptions& options);
 
 /// From there to the equilibrium that a rod in syrup comes to when it is let go: the springs become
 /// drag, which falls step by step (engine/solve/newton.h, relaxation()), and what touches on the
-/// way is touched.
+/// way is touched. Friction counts from the shape that was given: it is Coulomb's, found as the
+/// limit of friction that is bounded by what pressed a solve before, which needs no set of sticking
+/// points to be guessed.
 SolveReport relax_from_shape(RodContacts& contacts, Equations& equations,
                              const SolveOptions& options);
 

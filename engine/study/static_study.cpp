@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
-#include "engine/robot/contacts.h"
 #include "engine/run/observation.h"
+#include "engine/run/touching_solve.h"
 #include "engine/solve/newton.h"
 
 namespace cprsim {
@@ -50,12 +51,15 @@ Parameter parameter_of(const Scene& scene, std::size_t index) {
   return p;
 }
 
-/// Where rods touch obstacles, equilibria depend on how they are reached; what ties do to the
-/// stability of two rods is not worked out.
-void refuse_contacts(const Scene& scene) {
+/// What ties do to the stability of two rods is not worked out.
+void refuse_ties(const Scene& scene) {
   if (!scene.ties.empty())
     throw std::invalid_argument(
         "rods are tied in this scene, which studies of equilibria do not see: simulate it");
+}
+
+/// Where rods touch obstacles, equilibria depend on how they are reached.
+void refuse_contacts(const Scene& scene) {
   Robot robot = build_robot(scene);
   if (RodContacts(robot).any())
     throw std::invalid_argument(
@@ -65,10 +69,12 @@ void refuse_contacts(const Scene& scene) {
 
 }  // namespace
 
-StaticStudy::StaticStudy(Scene scene, double at, const std::vector<ProbeWrench>& probes)
+StaticStudy::StaticStudy(Scene scene, double at, const std::vector<ProbeWrench>& probes,
+                         bool touching)
     : scene_(std::make_unique<Scene>(std::move(scene))),
       tolerance_(scene_->solver.residual_tolerance.value_or(1e-10)) {
-  refuse_contacts(*scene_);
+  refuse_ties(*scene_);
+  if (!touching) refuse_contacts(*scene_);
   for (DriveSpec& drive : scene_->drives) {
     // a velocity drive says nothing about where a joint rests: it holds the scene's own position
     const bool velocity = drive.quantity == DriveQuantity::kVelocity;
@@ -107,12 +113,15 @@ StaticStudy::StaticStudy(Scene scene, double at, const std::vector<ProbeWrench>&
   scene_->simulation.mode = Mode::kStatic;
   for (std::size_t i = 0; i < scene_->drives.size(); ++i)
     drives_.push_back(parameter_of(*scene_, i));
+  contacts_given_ = touching;
   build();
 }
 
 void StaticStudy::build() {
   equations_.reset();
+  contacts_.reset();
   robot_ = std::make_unique<Robot>(build_robot(*scene_));
+  if (contacts_given_) contacts_ = std::make_unique<RodContacts>(*robot_);
   equations_ = std::make_unique<Equations>(*robot_, tolerance_);
   prepare();
   equations_->mark_start();
@@ -160,8 +169,28 @@ SolveReport StaticStudy::polish() {
   return newton(*equations_, options);
 }
 
+// As a run in mode static finds it.
+SolveReport StaticStudy::touch() {
+  SolveOptions options;
+  options.tolerance = tolerance_;
+  options.max_iterations = kIterations;
+  options.most_work = equations_->work() + kMostStaticWork;
+  const bool shaped = std::any_of(scene_->rods.begin(), scene_->rods.end(),
+                                  [](const RodSpec& rod) { return !rod.start.empty(); });
+  SolveReport report =
+      shaped ? hold_shape(*equations_, options) : load_gradually(*contacts_, *equations_, options);
+  if (shaped && report.converged()) report = relax_from_shape(*contacts_, *equations_, options);
+  if (!report.converged()) return report;
+  const std::string overlap = contacts_->overlap();
+  if (overlap.empty()) return report;
+  report.status = SolveStatus::kStalled;
+  report.worst_row = overlap;
+  return report;
+}
+
 SolveReport StaticStudy::solve() {
   build();
+  if (touches()) return touch();
   SolveOptions options;
   options.tolerance = tolerance_;
   options.max_iterations = kIterations;
@@ -259,7 +288,9 @@ void StaticStudy::adopt(const State& equilibrium) {
 }
 
 Snapshot StaticStudy::snapshot() const {
-  return take_snapshot(*robot_, nullptr, 0);
+  Snapshot now = take_snapshot(*robot_, nullptr, 0);
+  if (touches()) now.contact = contacts_->sample();
+  return now;
 }
 
 }  // namespace cprsim

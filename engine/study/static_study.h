@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/model/scene.h"
+#include "engine/robot/contacts.h"
 #include "engine/robot/equations.h"
 #include "engine/robot/robot.h"
 #include "engine/run/snapshot.h"
@@ -34,8 +35,14 @@ class StaticStudy {
  public:
   /// Every drive and load is held at its value at the time `at`: the left limit, as an initial
   /// equilibrium sees it. @param probes wrenches in addition to the scene's own.
+  /// @param touching whether rods may touch something: solve() finds that equilibrium then, and
+  /// nothing else is to be asked.
   /// @throws std::invalid_argument for a scene that the engine cannot simulate
-  explicit StaticStudy(Scene scene, double at = 0, const std::vector<ProbeWrench>& probes = {});
+  explicit StaticStudy(Scene scene, double at = 0, const std::vector<ProbeWrench>& probes = {},
+                       bool touching = false);
+
+  /// Whether rods or bodies may touch something.
+  bool touches() const { return contacts_ && contacts_->any(); }
 
   const Scene& scene() const { return *scene_; }
 
@@ -88,16 +95,18 @@ class StaticStudy {
  private:
   void build();
   void prepare();
+  SolveReport touch();
   SolveReport polish();
 
   std::unique_ptr<Scene> scene_;  // the robot points into it
   std::unique_ptr<Robot> robot_;
+  std::unique_ptr<RodContacts> contacts_;  ///< where they are not refused
   std::unique_ptr<Equations> equations_;
   std::vector<Parameter> drives_;
   std::size_t first_probe_ = 0;
   double tolerance_;
   State solved_;
-  bool has_solved_ = false;
+  bool has_solved_ = false, contacts_given_ = false;
 };
 
 }  // namespace cprsim

@@ -79,6 +79,13 @@ ShapeSpec read_primitive(Reading& r, const Node& node) {
     shape.kind = ShapeKind::kEllipsoid;
     shape.size = vec3_of(node.child("radii"), Vec3::Ones());
     positive(r, node.child("radii"), shape.size);
+  } else if (node.name == "cprsim:tube") {
+    const double inner = number_of(node.child("inner_radius"), 0.5 * radius);
+    shape.kind = ShapeKind::kTube;
+    shape.size = Vec3(radius, length, inner);
+    if (inner >= radius)
+      r.report.bad_text("E306", *node.child("inner_radius"),
+                        "<inner_radius> must be less than <radius>");
   } else if (node.name == "plane") {
     shape.kind = ShapeKind::kPlane;
     const auto size = node.child("size") ? parse_numbers(node.child("size")->text) : std::nullopt;

@@ -70,5 +70,88 @@ TEST(Capstan, AHeavyRopeSlidesWithItsForce) {
   EXPECT_LT(worst, 5e-3);
 }
 
+/// capstan_at_rest.xml with another coefficient of friction and with `part` of what would pull the
+/// rope off, `lifted` of it until t = 0.
+Scene hanging_rope(double mu, double part, double lifted) {
+  const LoadResult loaded =
+      load_scene(std::string(CPRSIM_SOURCE_DIR) + "/scenes/contact/capstan_at_rest.xml");
+  Scene scene = *loaded.scene;
+  constexpr double R = 0.05, r = 1e-3, above = 5e-4, axis = R + r + above, h1 = 0.15;
+  const double h2 = part * Capstan{R, r, 1, mu}.tension(h1, kPi), fall = 0.5 * kPi * above;
+  for (BodySpec& body : scene.bodies)
+    for (ColliderSpec& collider : body.colliders)
+      collider.surface.friction = mu;
+  RodSpec& rope = scene.rods[0];
+  const double light = h1 - fall, wound = kPi * axis;
+  rope.length = light + wound + h2 - fall;
+  scene.solver.points = static_cast<int>(std::lround(rope.length / 6e-4));
+  rope.start.clear();
+  const int samples = scene.solver.points.value() / 4;
+  for (int i = 0; i <= samples; ++i) {
+    const double s = rope.length * i / samples, phi = std::clamp((s - light) / axis, 0.0, kPi);
+    const double hangs = std::max(light - s, s - light - wound);
+    rope.start.push_back({static_cast<double>(i) / samples,
+                          {-axis * std::cos(phi), 0, hangs > 0 ? -hangs : axis * std::sin(phi)}});
+  }
+  LoadSpec hand;
+  hand.rod = 0;
+  hand.rod_s = 1;
+  hand.force = Vec3(0, 0, lifted * h2 * 1000 * 9.81 * kPi * r * r);
+  hand.has_profile = true;
+  ProfileTerm step;
+  step.shape = ShapeOfTime::kStep;
+  step.from = 1;
+  hand.profile.terms.push_back(step);
+  if (lifted > 0) scene.loads.push_back(hand);
+  return scene;
+}
+
+double light_end(const Simulation& simulation) {
+  return simulation.now().rods[0].points.front().position.z();
+}
+
+class HangingRope : public ::testing::TestWithParam<double> {};
+
+INSTANTIATE_TEST_SUITE_P(Friction, HangingRope, ::testing::Values(0.1, 0.3, 0.6));
+
+// Inside the limit it does not move by a micrometre in two seconds.
+TEST_P(HangingRope, StaysWithinTheLimit) {
+  Simulation simulation(hanging_rope(GetParam(), 0.98, 0));
+  simulation.start();
+  ASSERT_EQ(simulation.status(), RunStatus::kRunning) << simulation.failure();
+  const double from = light_end(simulation);
+  double most = 0;
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    most = std::max(most, std::abs(light_end(simulation) - from));
+  }
+  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
+  EXPECT_EQ(simulation.time(), 2);
+  // what hangs is what was asked for, but for the way that the rope sank to the drum
+  const double limit = Capstan{0.05, 1e-3, 1, GetParam()}.tension(-from, kPi),
+               heavy = -simulation.now().rods[0].points.back().position.z();
+  EXPECT_NEAR(heavy / limit, 0.98, 5e-3);
+  EXPECT_LT(most, 1e-6);
+}
+
+// Beyond it, let go by a hand that bore some of it, it slides, ever faster.
+TEST_P(HangingRope, SlidesOffBeyondTheLimit) {
+  Scene scene = hanging_rope(GetParam(), 1.02, 0.08);
+  scene.simulation.duration = 0.2;
+  Simulation simulation(scene);
+  simulation.start();
+  ASSERT_EQ(simulation.status(), RunStatus::kRunning) << simulation.failure();
+  const double from = light_end(simulation);
+  double early = 0, late = 0;
+  while (simulation.status() == RunStatus::kRunning) {
+    simulation.advance();
+    late = light_end(simulation) - from;
+    if (simulation.time() < 0.11) early = late;
+  }
+  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
+  EXPECT_GT(early, 1e-4);
+  EXPECT_GT(late, 3 * early);
+}
+
 }  // namespace
 }  // namespace cprsim

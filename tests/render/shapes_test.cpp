@@ -50,6 +50,7 @@ TEST(Shapes, AreClosedAndHaveTheirVolumeAndSize) {
       {"cylinder", shape(ShapeKind::kCylinder, {0.5, 2, 0}), kPi / 2, {0.5, 0.5, 1}},
       {"capsule", shape(ShapeKind::kCapsule, {0.5, 2, 0}), kPi / 2 + kPi / 6, {0.5, 0.5, 1.5}},
       {"cone", shape(ShapeKind::kCone, {0.5, 3, 0}), kPi / 4, {0.5, 0.5, 1.5}},
+      {"tube", shape(ShapeKind::kTube, {1, 2, 0.5}), 1.5 * kPi, {1, 1, 1}},
       {"ellipsoid", shape(ShapeKind::kEllipsoid, {1, 2, 3}), 8 * kPi, {1, 2, 3}}};
   for (const Case& c : cases) {
     const TriMesh mesh = make_shape(c.spec, {}, {});
@@ -63,8 +64,8 @@ TEST(Shapes, AreClosedAndHaveTheirVolumeAndSize) {
 TEST(Shapes, NormalsAreUnitAndOnTheFacesSide) {
   for (ShapeKind kind :
        {ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder, ShapeKind::kCapsule,
-        ShapeKind::kCone, ShapeKind::kEllipsoid, ShapeKind::kPlane}) {
-    const TriMesh mesh = make_shape(shape(kind, {0.3, 0.4, 0.5}), {}, {});
+        ShapeKind::kCone, ShapeKind::kEllipsoid, ShapeKind::kTube, ShapeKind::kPlane}) {
+    const TriMesh mesh = make_shape(shape(kind, {0.6, 0.4, 0.5}), {}, {});
     ASSERT_FALSE(mesh.indices.empty());
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
       const Vertex &a = mesh.vertices[mesh.indices[i]], &b = mesh.vertices[mesh.indices[i + 1]],

@@ -57,6 +57,22 @@ TEST(SolveCommand, InverseAndForwardAgree) {
   EXPECT_NEAR(position[2].get<double>(), 0.39, 1e-9);
 }
 
+// A mesh, and another rod: what scenes/contact expects of runs.
+TEST(SolveCommand, FindsWhatRestsOnSomething) {
+  const std::string scenes = std::string(CPRSIM_SOURCE_DIR) + "/scenes/contact/";
+  const Answer ropes = ask("solve " + scenes + "ropes.xml --channel contact.force");
+  ASSERT_EQ(ropes.code, 0);
+  EXPECT_NEAR(ropes.json["contact"]["force"].get<double>(), 0.06561242, 1e-6);
+  EXPECT_NEAR(ropes.json["channels"]["contact.force"].get<double>(), 0.06561242, 1e-6);
+  EXPECT_EQ(ropes.json["contact"]["count"], 1);
+  EXPECT_FALSE(ropes.json.contains("stability"));
+  const Answer rock = ask("solve " + scenes + "cantilever_on_rock.xml");
+  ASSERT_EQ(rock.code, 0);
+  EXPECT_GT(rock.json["contact"]["force"].get<double>(), 0.1);
+  // its stability and drives that lead to a pose are not worked out
+  EXPECT_EQ(ask("solve " + scenes + "robot_and_bar.xml --pose robot::platform=0,0,0.3").code, 3);
+}
+
 TEST(SolveCommand, BringsAFrameToTheTargetOfItsScene) {
   const std::string scene =
       "solve " + std::string(CPRSIM_SOURCE_DIR) + "/scenes/inverse/csg_published.xml";

@@ -138,7 +138,7 @@ Solved solve(StaticStudy& study, const SolveWords& w, const std::vector<Paramete
       parameters.push_back(drive);
   Solved solved;
   solved.report = study.solve();
-  if (!solved.report.converged()) return solved;
+  if (!solved.report.converged() || study.touches()) return solved;
   solved.inverse = !poses.empty() || !w.measured.empty();
   if (solved.inverse) solved.inverse_report = solve_inverse(study, parameters, goal);
   solved.stability = judge(study);
@@ -188,6 +188,14 @@ std::string stability_text(const StaticStudy& study, const Stability& s) {
   return text;
 }
 
+/// What may leave a surface or slide along it is stable or not by more than its stiffness says.
+std::string contact_text(const ContactSample& touching) {
+  return fmt::format(
+      "  touching    at {} points, pressed by {:.6g} N, friction {:.6g} N\n"
+      "  stability   not judged where rods touch something\n",
+      touching.count, touching.force, touching.friction);
+}
+
 std::string text_of(const std::string& label, const StaticStudy& study, const Solved& solved,
                     const std::vector<Parameter>& wrench, const std::vector<Channel>& channels) {
   const Scene& scene = study.scene();
@@ -201,7 +209,7 @@ std::string text_of(const std::string& label, const StaticStudy& study, const So
         "{:.1e}\n",
         solved.inverse_report.reached ? "reached" : "NOT reached", solved.inverse_report.iterations,
         solved.inverse_report.residual, solved.inverse_report.weakest);
-  text += stability_text(study, solved.stability);
+  text += study.touches() ? contact_text(now.contact) : stability_text(study, solved.stability);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (study.robot().links[i].body < 0) continue;
     const Pose& X = now.bodies[i].X_WB;
@@ -243,10 +251,16 @@ Json json_of(const StaticStudy& study, const Solved& solved, const std::vector<P
                     {"weakest", solved.inverse_report.weakest},
                     {"why", solved.inverse_report.why}};
   const Stability& s = solved.stability;
-  json["stability"] = {{"verdict", to_string(s.verdict)},
-                       {"unstable_directions", s.unstable},
-                       {"softest_N_per_m", s.softest},
-                       {"potential_loads", s.potential}};
+  if (study.touches())
+    json["contact"] = {{"count", now.contact.count},
+                       {"force", now.contact.force},
+                       {"friction", now.contact.friction},
+                       {"penetration", now.contact.penetration}};
+  else
+    json["stability"] = {{"verdict", to_string(s.verdict)},
+                         {"unstable_directions", s.unstable},
+                         {"softest_N_per_m", s.softest},
+                         {"potential_loads", s.potential}};
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (study.robot().links[i].body < 0) continue;
     const Pose& X = now.bodies[i].X_WB;
@@ -283,7 +297,8 @@ int run(const SolveWords& w, const Scene& scene, const Console& console) {
   for (const std::string& text : w.wrenches)
     probes.push_back(wrench_of(scene, text));
   const std::vector<Channel> channels = channels_of(scene, w.channels);
-  StaticStudy study(scene, w.at.value_or(0), probes);
+  const std::vector<PoseGoal> poses = pose_goals(w, scene);
+  StaticStudy study(scene, w.at.value_or(0), probes, poses.empty() && w.measured.empty());
   if (!w.poses.empty() && study.drives().empty())
     throw UsageError("--pose needs drives that may change, and the scene has none");
   const std::vector<Parameter> wrench =

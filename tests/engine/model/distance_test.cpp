@@ -26,6 +26,7 @@ const ShapeSpec kShapes[] = {
     shape(ShapeKind::kCapsule, {0.3, 0.8, 0}),      shape(ShapeKind::kCylinder, {0.4, 0.7, 0}),
     shape(ShapeKind::kCone, {0.5, 0.8, 0}),         shape(ShapeKind::kPlane, {1, 1, 0}),
     shape(ShapeKind::kEllipsoid, {0.7, 0.3, 0.45}), shape(ShapeKind::kEllipsoid, {0.4, 0.4, 0.8}),
+    shape(ShapeKind::kTube, {1.2, 2.5, 0.8}),
 };
 
 class OutsidePoint {
@@ -84,6 +85,11 @@ TEST(Distance, KnowsInsideFromOutside) {
   EXPECT_NEAR(distance_to(kShapes[3], Vec3(0, 0.1, 0.3)).d, -0.05, 1e-15);
   EXPECT_NEAR(distance_to(kShapes[4], Vec3(0, 0, -0.39)).d, -0.01, 1e-15);
   EXPECT_NEAR(distance_to(kShapes[4], Vec3(0, 0, 0.5)).d, 0.1, 1e-15);  // above the apex
+  const ShapeSpec& tube = kShapes[8];
+  EXPECT_NEAR(distance_to(tube, Vec3(0, -0.3, 0.9)).d, 0.5, 1e-15);  // in the hole
+  EXPECT_NEAR(distance_to(tube, Vec3(0, -0.3, 0.9)).n.y(), 1, 1e-15);
+  EXPECT_NEAR(distance_to(tube, Vec3(0.9, 0, 0)).d, -0.1, 1e-15);
+  EXPECT_NEAR(distance_to(tube, Vec3(0, 0, 2)).d, std::hypot(0.8, 0.75), 1e-15);
 }
 
 // On and off the planes of symmetry, in and out, near and far: the nearest of many points of the

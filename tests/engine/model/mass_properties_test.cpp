@@ -55,6 +55,14 @@ TEST(MassProperties, SolidsOfRevolutionAreTheSumOfTheirDiscs) {
   const double r = 0.03, l = 0.2;
   expect_same(mass_properties(solid_of(ShapeKind::kCylinder, {r, l, 0}), {}, kDensity),
               of_discs([&](double) { return r; }, {-l / 2, l / 2}), 1e-12);
+  const MassProperties whole =
+                           mass_properties(solid_of(ShapeKind::kCylinder, {r, l, 0}), {}, kDensity),
+                       hole = mass_properties(solid_of(ShapeKind::kCylinder, {r / 3, l, 0}), {},
+                                              kDensity),
+                       tube =
+                           mass_properties(solid_of(ShapeKind::kTube, {r, l, r / 3}), {}, kDensity);
+  EXPECT_NEAR(tube.mass, whole.mass - hole.mass, 1e-12 * whole.mass);
+  EXPECT_LT((tube.inertia - whole.inertia + hole.inertia).norm(), 1e-12 * whole.inertia.norm());
   expect_same(mass_properties(solid_of(ShapeKind::kCone, {r, l, 0}), {}, kDensity),
               of_discs([&](double z) { return r * (0.5 - z / l); }, {-l / 2, l / 2}), 1e-12);
   const auto ball = [](double radius, double z) {
