@@ -41,8 +41,9 @@ TEST(TinyStep, KeepsRestAtRest) {
   add_load(scene, 1, {-0.9 * EI / (kLength * kLength), 0, 0});
   Simulation simulation(by_method(scene));
   EXPECT_NEAR(simulation.facts().rods[0].growth_exponent, 138, 2);
-  if (simulation.facts().rods[0].method == Method::kShooting)
+  if (simulation.facts().rods[0].method == Method::kShooting) {
     EXPECT_GE(simulation.facts().rods[0].segments, 23);
+  }
   simulation.start();
   const Snapshot rest = simulation.now();
   simulation.advance();
