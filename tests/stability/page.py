@@ -77,7 +77,7 @@ def main(folder, page):
         if all(ok for ok, _ in found):
             return "passes" if found else ""
         worst = [f"{what}: {value:g} of {limit:g}" for ok, list_ in found if not ok for what, value, limit in list_ if value > limit]
-        return "**fails**: " + "<br>".join(worst)
+        return "**beyond**: " + ("<br>".join(worst) or "a condition of the test that is no number")
 
     lines, part, failed = [], "", 0
     for row, asks, tests in rows():
@@ -104,7 +104,7 @@ def main(folder, page):
                    "an automatic test; where physics has an answer, the test knows it. The margin is how many times "
                    "smaller the measured number is than its limit. Rods are solved by shooting unless a test says otherwise; "
                    "where it says nothing, and nothing touches, the same test is made by the other methods as well, with the "
-                   "same limits (`CPRSIM_TEST_METHOD=strain build/bin/stability_test`).\n" + "\n".join(lines) + "\n")
+                   "same limits (`CPRSIM_TEST_METHOD=strain build/bin/stability_test`); **beyond** says which number exceeds them.\n" + "\n".join(lines) + "\n")
     return 1 if failed else 0
 
 
