@@ -20,17 +20,21 @@ ProfileTerm ramp(double from, double to) {
   return term;
 }
 
+/// Lee's frame (scenes/paths) under a load that grows, in quasi-static steps of 0.01 s.
+Scene pressed_frame(double load, const ProfileTerm& growth, double duration) {
+  Scene scene = *load_scene(CPRSIM_SOURCE_DIR "/scenes/paths/lees_frame.xml").scene;
+  scene.simulation.mode = Mode::kQuasistatic;
+  scene.simulation.duration = duration;
+  scene.solver.step = 0.01;
+  scene.loads[0].force = {0, 0, -load};
+  scene.loads[0].has_profile = true;
+  scene.loads[0].profile.terms = {growth};
+  return scene;
+}
+
 // N11: Lee's frame under a load that grows past the fold at 18546.5587 (scenes/paths).
 TEST(QuasiStatics, StopsAtAFold) {
-  LoadResult loaded = load_scene(CPRSIM_SOURCE_DIR "/scenes/paths/lees_frame.xml");
-  ASSERT_TRUE(loaded.scene);
-  Scene& scene = *loaded.scene;
-  scene.simulation.mode = Mode::kQuasistatic;
-  scene.simulation.duration = 1;
-  scene.solver.step = 0.01;
-  scene.loads[0].force = {0, 0, -20000};
-  scene.loads[0].has_profile = true;
-  scene.loads[0].profile.terms = {ramp(0, 1)};
+  const Scene scene = pressed_frame(20000, ramp(0, 1), 1);
   Simulation simulation(by_method(scene));
   simulation.start();
   double farthest = 0;
@@ -51,17 +55,9 @@ TEST(QuasiStatics, StopsAtAFold) {
 
 // A load that turns at 0.013 s is met there; the steps after that come back to those of the scene.
 TEST(QuasiStatics, KeepsToItsInstants) {
-  LoadResult loaded = load_scene(CPRSIM_SOURCE_DIR "/scenes/paths/lees_frame.xml");
-  ASSERT_TRUE(loaded.scene);
-  Scene& scene = *loaded.scene;
-  scene.simulation.mode = Mode::kQuasistatic;
-  scene.simulation.duration = 0.04;
-  scene.solver.step = 0.01;
-  scene.loads[0].force = {0, 0, -100};
-  scene.loads[0].has_profile = true;
   ProfileTerm late = ramp(0, 1);
   late.start = 0.013;
-  scene.loads[0].profile.terms = {late};
+  const Scene scene = pressed_frame(100, late, 0.04);
   Simulation simulation(by_method(scene));
   simulation.start();
   std::vector<double> times;
