@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/model/flight.h"
+#include "engine/model/start_pose.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/values.h"
 #include "scenes/loader/weigh.h"
@@ -135,10 +136,7 @@ void check_reach(Reading& r) {
   const auto still = [&](const RodEndSpec& end) {
     return end.at.body == kWorld || fixed[at(end.at.body)];
   };
-  const auto where = [&](const RodEndSpec& end) -> Vec3 {
-    return end.at.body == kWorld ? end.at.X_BF.p
-                                 : r.scene.bodies[at(end.at.body)].X_WB * end.at.X_BF.p;
-  };
+  const auto where = [&](const RodEndSpec& end) { return start_pose(r.scene, end.at).p; };
   for (std::size_t k = 0; k < r.scene.rods.size(); ++k) {
     const RodSpec& rod = r.scene.rods[k];
     const bool driven =

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/model/planar.h"
+#include "engine/model/start_pose.h"
 #include "scenes/loader/reading.h"
 #include "scenes/loader/values.h"
 
@@ -49,9 +50,7 @@ class PlanarCheck {
     return v.cross(normal_).norm() > kPlanarAngle * std::max(v.norm(), 1e-300);
   }
 
-  Pose in_world(const FrameRef& frame) const {
-    return frame.body == kWorld ? frame.X_BF : scene_.bodies[at(frame.body)].X_WB * frame.X_BF;
-  }
+  Pose in_world(const FrameRef& frame) const { return start_pose(scene_, frame); }
 
   void gravity(const Node& world) {
     if (!scene_.effects.has(Effect::kGravity) || !leaves(scene_.gravity)) return;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/model/rest_shape.h"
+#include "engine/model/start_pose.h"
 #include "scenes/loader/suggest.h"
 #include "scenes/loader/values.h"
 
@@ -91,10 +92,6 @@ RodEndSpec read_end(Reading& r, const Node& node, int scope, std::optional<RodOn
   return end;
 }
 
-Pose placed(const Scene& scene, const FrameRef& frame) {
-  return frame.body == kWorld ? frame.X_BF : scene.bodies[at(frame.body)].X_WB * frame.X_BF;
-}
-
 /// What rods on that end of `owner` are attached to; nothing, with an error, if that turns in a
 /// joint.
 std::optional<FrameRef> end_of(Reading& r, const RodOnRod& on_rod) {
@@ -111,7 +108,7 @@ std::optional<FrameRef> end_of(Reading& r, const RodOnRod& on_rod) {
   BodySpec link;
   link.name = owner.name + (on_rod.on_tip ? "::tip" : "::base");
   link.place = on_rod.node->place;
-  link.X_WB = placed(scene, owner.base.at);
+  link.X_WB = start_pose(scene, owner.base.at);
   if (on_rod.on_tip) link.X_WB = link.X_WB * RestShape(owner).unloaded(1, owner.length);
   end.joint = EndJoint::kFixed;
   end.at = {static_cast<int>(scene.bodies.size()), Pose{}};

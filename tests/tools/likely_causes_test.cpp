@@ -72,6 +72,12 @@ TEST(ShortRod, IsNamedWithTheGapUnlessItStretches) {
   scene.rods[0].length = 0.3;
   scene.rods[0].tip.joint = EndJoint::kFree;
   EXPECT_EQ(causes(false), "");
+  DriveSpec feed;
+  feed.rod = 0;
+  scene.rods[0].tip.joint = EndJoint::kFixed;
+  scene.drives.push_back(feed);
+  EXPECT_EQ(causes(false), "") << "its length is another";
+  scene.drives.clear();
   scene.rods[0].tip.joint = EndJoint::kFixed;
   scene.effects.set(Effect::kExtension, true);
   EXPECT_EQ(causes(false), "");

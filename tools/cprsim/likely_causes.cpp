@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/model/start_pose.h"
 #include "engine/solve/newton.h"
 #include "tools/cprsim/names.h"
 
@@ -109,18 +110,18 @@ void blame_weight(const Scene& scene, const ProblemFacts& facts, Causes& causes)
       heaviest->name, times));
 }
 
-Vec3 place_of(const Scene& scene, const FrameRef& end) {
-  if (end.body == kWorld) return end.X_BF.p;
-  return (scene.bodies[static_cast<std::size_t>(end.body)].X_WB * end.X_BF).p;
-}
-
-/// Between ends that stay where they are, or whose bodies would have to come nearer first.
+/// Ends that cannot move are refused by the loader (E510); other bodies would have to come nearer.
 void blame_length(const Scene& scene, Causes& causes) {
   if (scene.effects.has(Effect::kExtension)) return;
-  for (const RodSpec& rod : scene.rods) {
-    if (rod.base.joint == EndJoint::kFree || rod.tip.joint == EndJoint::kFree) continue;
-    const double gap = (place_of(scene, rod.tip.at) - place_of(scene, rod.base.at)).norm();
-    if (gap <= rod.length) continue;
+  for (std::size_t k = 0; k < scene.rods.size(); ++k) {
+    const RodSpec& rod = scene.rods[k];
+    const bool driven =
+        std::any_of(scene.drives.begin(), scene.drives.end(),
+                    [k](const DriveSpec& drive) { return drive.rod == static_cast<int>(k); });
+    const bool held = rod.base.joint != EndJoint::kFree && rod.tip.joint != EndJoint::kFree;
+    if (!held || driven) continue;
+    const double gap = (start_pose(scene, rod.tip.at).p - start_pose(scene, rod.base.at).p).norm();
+    if (gap <= rod.length * (1 + 1e-9)) continue;
     causes.push_back(fmt::format(
         "rod '{}' is {:.6g} m long, the gap between its ends {:.6g} m: make it longer, or "
         "list <extension/>",
