@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "tools/cprsim/build_simulation.h"
+#include "tools/cprsim/measured_run.h"
 #include "tools/cprsim/sweep_plan.h"
 
 namespace cprsim {
@@ -141,12 +142,6 @@ bool acts_at_rest(Effect effect) {
   return effect != Effect::kRotaryInertia && effect != Effect::kDamping;
 }
 
-std::string first_error(const std::vector<Diagnostic>& diagnostics) {
-  for (const Diagnostic& d : diagnostics)
-    if (d.severity == Severity::kError) return d.code + ": " + d.message;
-  return "the scene is invalid";
-}
-
 class Estimator {
  public:
   Estimator(const std::string& path, const SceneOptions& options, const Scene& scene,
@@ -189,7 +184,7 @@ class Estimator {
     (one.listed ? other.without : other.with).push_back(effect_name(effect));
     const LoadResult loaded = load_scene(path_, load_options(other));
     if (!loaded.scene) {
-      one.unknown = first_error(loaded.diagnostics);
+      one.unknown = reason_of(loaded.diagnostics);
       return one;
     }
     const auto consider = [&](double change, const char* by) {

@@ -22,13 +22,6 @@ std::vector<double> evenly(double end) {
   return instants;
 }
 
-/// The first error of a scene that is refused.
-std::string reason_of(const std::vector<Diagnostic>& diagnostics) {
-  for (const Diagnostic& d : diagnostics)
-    if (d.severity == Severity::kError) return d.code + ": " + d.message;
-  return "the scene is invalid";
-}
-
 std::vector<Channel> channels_named(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<Channel> channels;
   for (const std::string& name : names)
@@ -61,6 +54,12 @@ QuietRun run_once(const Scene& scene, bool as_asked, const Looking& looking, Mea
 }
 
 }  // namespace
+
+std::string reason_of(const std::vector<Diagnostic>& diagnostics) {
+  for (const Diagnostic& d : diagnostics)
+    if (d.severity == Severity::kError) return d.code + ": " + d.message;
+  return "the scene is invalid";
+}
 
 std::string settings_text(const Settings& settings) {
   std::string text;

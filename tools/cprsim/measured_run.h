@@ -19,6 +19,9 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 /// "scheme=esdirk43, tolerance=1e-06"
 std::string settings_text(const Settings& settings);
 
+/// The first error of a scene that is refused.
+std::string reason_of(const std::vector<Diagnostic>& diagnostics);
+
 struct MeasuredRun {
   std::string refusal;  ///< why the scene with these settings is invalid; nothing was run
   std::string failure;  ///< why the run did not get to its end
