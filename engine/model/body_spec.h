@@ -22,6 +22,14 @@ struct FrameRef {
 };
 
 struct BodySpec {
+  // In scene.cpp: every file that makes one would compile these, for seconds.
+  BodySpec();
+  BodySpec(const BodySpec&);
+  BodySpec(BodySpec&&) noexcept;
+  BodySpec& operator=(const BodySpec&);
+  BodySpec& operator=(BodySpec&&) noexcept;
+  ~BodySpec();
+
   std::string name;  ///< scoped, e.g. robot::platform
   Place place;
   Pose X_WB;               ///< link frame at t = 0
@@ -73,6 +81,14 @@ struct AxisSpec {
 /// The base class is the first freedom; `second` and `third` count where the kind has them:
 /// universal two rotations; cylindrical translation, rotation; planar two translations, rotation.
 struct JointSpec : AxisSpec {
+  // In scene.cpp: every file that makes one would compile these, for seconds.
+  JointSpec();
+  JointSpec(const JointSpec&);
+  JointSpec(JointSpec&&) noexcept;
+  JointSpec& operator=(const JointSpec&);
+  JointSpec& operator=(JointSpec&&) noexcept;
+  ~JointSpec();
+
   std::string name;  ///< scoped
   Place place;
   JointKind kind = JointKind::kFixed;

@@ -29,6 +29,14 @@ enum class Interpolation { kStep, kLinear, kPchip, kCubic };
 /// phase) within [start, end], 0 outside. Chirp: likewise, its frequency growing linearly from
 /// `frequency` to `last_frequency`. Keyframes hold their first and last value outside.
 struct ProfileTerm {
+  // In scene.cpp: every file that makes one would compile these, for seconds.
+  ProfileTerm();
+  ProfileTerm(const ProfileTerm&);
+  ProfileTerm(ProfileTerm&&) noexcept;
+  ProfileTerm& operator=(const ProfileTerm&);
+  ProfileTerm& operator=(ProfileTerm&&) noexcept;
+  ~ProfileTerm();
+
   ShapeOfTime shape = ShapeOfTime::kConstant;
   double value = 0;  ///< constant
   double from = 0, to = 0, start = 0, end = 0;

@@ -118,6 +118,14 @@ struct RodCut {
 };
 
 struct RodSpec {
+  // In scene.cpp: every file that makes one would compile these, for seconds.
+  RodSpec();
+  RodSpec(const RodSpec&);
+  RodSpec(RodSpec&&) noexcept;
+  RodSpec& operator=(const RodSpec&);
+  RodSpec& operator=(RodSpec&&) noexcept;
+  ~RodSpec();
+
   std::string name;  ///< scoped
   Place place;
   RodEndSpec base, tip;

@@ -32,6 +32,14 @@ struct NamedFrame {
 };
 
 struct Scene {
+  // In scene.cpp: every file that makes one would compile these, for seconds.
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   std::string name;
   std::vector<std::string>
       files;         ///< [0] the scene itself, then what it includes; Place::file indexes

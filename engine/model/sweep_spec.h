@@ -26,6 +26,14 @@ struct SweepMeasure {
 };
 
 struct SweepSpec {
+  // In scene.cpp: every file that makes one would compile these, for seconds.
+  SweepSpec();
+  SweepSpec(const SweepSpec&);
+  SweepSpec(SweepSpec&&) noexcept;
+  SweepSpec& operator=(const SweepSpec&);
+  SweepSpec& operator=(SweepSpec&&) noexcept;
+  ~SweepSpec();
+
   std::string name;
   Place place;
   std::vector<SweepVary> vary;

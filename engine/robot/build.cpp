@@ -287,6 +287,11 @@ RobotScale choose_scale(const Robot& robot) {
 
 }  // namespace
 
+Robot::Robot() = default;
+Robot::Robot(Robot&&) noexcept = default;
+Robot& Robot::operator=(Robot&&) noexcept = default;
+Robot::~Robot() = default;
+
 Robot build_robot(const Scene& scene, const RodMaker& make_rods) {
   Robot robot;
   robot.scene = &scene;

@@ -13,6 +13,8 @@
 
 namespace cprsim {
 
+Equations::~Equations() = default;
+
 Equations::Equations(Robot& robot, double tolerance) : robot_(robot), tolerance_(tolerance) {
   const std::size_t n = robot.bodies.size();
   wrench_.assign(n, Vec6::Zero());

@@ -43,6 +43,7 @@ bool alike(const RobotUnknowns& a, const RobotUnknowns& b);
 class Equations final : public Problem {
  public:
   Equations(Robot& robot, double tolerance);
+  ~Equations() override;
 
   /// Sets drives, loads and time coefficients for the solves that follow. `before`: left limits at
   /// jumps.

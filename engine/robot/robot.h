@@ -81,6 +81,12 @@ struct RobotScale {
 class PhaseClock;
 
 struct Robot {
+  // In build.cpp: every file that makes one would compile these, for seconds.
+  Robot();
+  Robot(Robot&&) noexcept;
+  Robot& operator=(Robot&&) noexcept;
+  ~Robot();
+
   const Scene* scene = nullptr;
   std::vector<LinkPlace> links;  ///< as Scene::bodies
   std::vector<RigidBody> bodies;

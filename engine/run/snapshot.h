@@ -78,6 +78,14 @@ struct ContactSample {
 };
 
 struct Snapshot {
+  // In snapshot.cpp: every file that makes one would compile these, for seconds.
+  Snapshot();
+  Snapshot(const Snapshot&);
+  Snapshot(Snapshot&&) noexcept;
+  Snapshot& operator=(const Snapshot&);
+  Snapshot& operator=(Snapshot&&) noexcept;
+  ~Snapshot();
+
   double time = 0;
   std::vector<BodySample> bodies;  ///< as Scene::bodies
   std::vector<JointSample> joints;

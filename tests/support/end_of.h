@@ -9,11 +9,6 @@
 namespace cprsim {
 
 /// The last snapshot of a run that must get to its end.
-inline Snapshot end_of(const Scene& scene) {
-  Simulation simulation(scene);
-  const Snapshot end = run_to_end(simulation);
-  EXPECT_EQ(simulation.status(), RunStatus::kDone) << simulation.failure();
-  return end;
-}
+Snapshot end_of(const Scene& scene);
 
 }  // namespace cprsim

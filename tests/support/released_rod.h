@@ -12,18 +12,6 @@ namespace cprsim {
 inline const Vec3 kReleasedTipHeld(-0.1263366876, 0, 0.3752363348),
     kReleasedTipAfterOneSecond(-0.003583027, 0, 0.399981784);
 
-inline Scene released_rod_scene() {
-  Scene scene;
-  switch_on(scene, {Effect::kGravity, Effect::kExtension, Effect::kShear, Effect::kRotaryInertia,
-                    Effect::kDamping});
-  scene.gravity = {-9.81, 0, 0};
-  scene.rods.push_back(steel_rod(0.4, 1e-3));
-  damp(scene.rods[0], 1e-3);
-  add_load(scene, 1, {-1, 0, 0}, Vec3::Zero(), true);
-  scene.simulation.mode = Mode::kDynamic;
-  scene.simulation.initial_static = true;
-  scene.simulation.duration = 1;
-  return scene;
-}
+Scene released_rod_scene();
 
 }  // namespace cprsim

@@ -2,6 +2,7 @@
 // What the machine may do to a run: closed streams, full disks, failing calls, kills. Files have
 // their names only when they are complete, and the answer is an exit code with a message.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <csignal>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs that record HDF5: full disks, kills, going on from a state, comparing.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <csignal>
 

@@ -4,12 +4,8 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "tests/tools/scratch_folder.h"
@@ -47,16 +43,10 @@ constexpr const char* kSwing = R"(<?xml version="1.0"?>
 </sdf>
 )";
 
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
+std::string replaced(std::string text, const std::string& from, const std::string& to);
 
-inline std::string swing(const std::string& scheme = "esdirk32",
-                         const std::string& time = "step=\"0.001\"") {
-  return replaced(replaced(kSwing, "SCHEME", scheme), "TIME", time);
-}
+std::string swing(const std::string& scheme = "esdirk32",
+                  const std::string& time = "step=\"0.001\"");
 
 struct Outcome {
   int code = -1;  ///< -1: killed by a signal
@@ -66,35 +56,11 @@ struct Outcome {
 class Program : public testing::Test {
  protected:
   /// Words as one would type them; `before` goes in front of the program: variables, ulimit, ...
-  Outcome run(const std::string& words, const std::string& before = "") const {
-    const std::string command = "cd '" + folder_.path().string() + "' && unset GITHUB_ACTIONS && " +
-                                before + " '" + CPRSIM_BINARY_DIR + "/bin/cprsim' " + words +
-                                " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) && WEXITSTATUS(status) < 128 ? WEXITSTATUS(status) : -1,
-            contents(folder_ / "out.txt"), contents(folder_ / "err.txt")};
-  }
+  Outcome run(const std::string& words, const std::string& before = "") const;
 
   /// Starts `cprsim FIRST SECOND ...` and sends it a signal after so many milliseconds.
   /// @return the status of waitpid
-  int run_and_signal(std::vector<std::string> words, int signal, int milliseconds) const {
-    const pid_t child = fork();
-    if (child == 0) {
-      std::string name = std::string(CPRSIM_BINARY_DIR) + "/bin/cprsim";
-      std::vector<char*> arguments{name.data()};
-      for (std::string& word : words)
-        arguments.push_back(word.data());
-      arguments.push_back(nullptr);
-      if (chdir(folder_.path().c_str()) != 0) _exit(99);
-      execv(name.c_str(), arguments.data());
-      _exit(99);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    kill(child, signal);
-    int status = 0;
-    EXPECT_EQ(waitpid(child, &status, 0), child);
-    return status;
-  }
+  int run_and_signal(std::vector<std::string> words, int signal, int milliseconds) const;
 
   static bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;

@@ -2,6 +2,7 @@
 // A run that was stopped, or asked for checkpoints, goes on from its state as if nothing had
 // happened: the bytes of its recordings are those of the whole run.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <csignal>

@@ -2,11 +2,17 @@
 // The slider-crank for a very long time, by the program as it is shipped: nothing may grow. 10,000
 // steps here; CPRSIM_SOAK_STEPS=1000000 soak_test takes a million and prints the figures of
 // docs/soak.md.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/system/program.h"
 

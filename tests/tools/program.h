@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,18 +24,9 @@ struct Answer {
 class ProgramTest : public testing::Test {
  protected:
   /// `words` as one would type them in a shell.
-  Answer run(const std::string& words) const {
-    const std::string command = "cd '" + folder_.path().string() +
-                                "' && unset GITHUB_ACTIONS && '" CPRSIM_BINARY_DIR "/bin/cprsim' " +
-                                words + " >out.txt 2>err.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder_ / "out.txt"),
-            contents(folder_ / "err.txt")};
-  }
+  Answer run(const std::string& words) const;
 
-  nlohmann::json json(const std::string& path) const {
-    return nlohmann::json::parse(contents(folder_ / path));
-  }
+  nlohmann::json json(const std::string& path) const;
 
   bool exists(const std::string& path) const { return std::filesystem::exists(folder_ / path); }
 
@@ -49,10 +39,6 @@ class ProgramTest : public testing::Test {
 };
 
 /// The text with one part in it replaced.
-inline std::string with(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
+std::string with(std::string text, const std::string& from, const std::string& to);
 
 }  // namespace cprsim

@@ -12,15 +12,8 @@ namespace cprsim {
 
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "cprsim-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
+  ScratchFolder();
+  ~ScratchFolder();
 
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
@@ -33,15 +26,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-inline std::string contents(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
+std::string contents(const std::filesystem::path& path);
 
-inline void spill(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
+void spill(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace cprsim
