@@ -22,7 +22,7 @@ struct FrameRef {
 };
 
 struct BodySpec {
-  // In scene.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in scene.cpp: dozens of files make and copy one.
   BodySpec();
   BodySpec(const BodySpec&);
   BodySpec(BodySpec&&) noexcept;
@@ -81,7 +81,7 @@ struct AxisSpec {
 /// The base class is the first freedom; `second` and `third` count where the kind has them:
 /// universal two rotations; cylindrical translation, rotation; planar two translations, rotation.
 struct JointSpec : AxisSpec {
-  // In scene.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in scene.cpp: dozens of files make and copy one.
   JointSpec();
   JointSpec(const JointSpec&);
   JointSpec(JointSpec&&) noexcept;

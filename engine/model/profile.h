@@ -29,7 +29,7 @@ enum class Interpolation { kStep, kLinear, kPchip, kCubic };
 /// phase) within [start, end], 0 outside. Chirp: likewise, its frequency growing linearly from
 /// `frequency` to `last_frequency`. Keyframes hold their first and last value outside.
 struct ProfileTerm {
-  // In scene.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in scene.cpp: dozens of files make and copy one.
   ProfileTerm();
   ProfileTerm(const ProfileTerm&);
   ProfileTerm(ProfileTerm&&) noexcept;

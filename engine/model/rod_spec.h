@@ -118,7 +118,7 @@ struct RodCut {
 };
 
 struct RodSpec {
-  // In scene.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in scene.cpp: dozens of files make and copy one.
   RodSpec();
   RodSpec(const RodSpec&);
   RodSpec(RodSpec&&) noexcept;

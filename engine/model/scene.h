@@ -32,7 +32,7 @@ struct NamedFrame {
 };
 
 struct Scene {
-  // In scene.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in scene.cpp: dozens of files make and copy one.
   Scene();
   Scene(const Scene&);
   Scene(Scene&&) noexcept;

@@ -26,7 +26,7 @@ struct SweepMeasure {
 };
 
 struct SweepSpec {
-  // In scene.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in scene.cpp: dozens of files make and copy one.
   SweepSpec();
   SweepSpec(const SweepSpec&);
   SweepSpec(SweepSpec&&) noexcept;

@@ -81,7 +81,7 @@ struct RobotScale {
 class PhaseClock;
 
 struct Robot {
-  // In build.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in build.cpp: dozens of files make one.
   Robot();
   Robot(Robot&&) noexcept;
   Robot& operator=(Robot&&) noexcept;

@@ -78,7 +78,7 @@ struct ContactSample {
 };
 
 struct Snapshot {
-  // In snapshot.cpp: every file that makes one would compile these, for seconds.
+  // Compiled once, in snapshot.cpp: dozens of files make and copy one.
   Snapshot();
   Snapshot(const Snapshot&);
   Snapshot(Snapshot&&) noexcept;
