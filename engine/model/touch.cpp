@@ -78,6 +78,13 @@ std::string why_not_links(const Scene& scene, const ContactPair& pair) {
 
 }  // namespace
 
+const TieSpec* tie_between(const Scene& scene, int rod, int other) {
+  for (const TieSpec& tie : scene.ties)
+    if ((tie.rod == rod && tie.other == other) || (tie.rod == other && tie.other == rod))
+      return &tie;
+  return nullptr;
+}
+
 std::vector<ContactParty> contact_parties(const Scene& scene) {
   std::vector<ContactParty> all;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k)
@@ -111,7 +118,10 @@ std::string why_never_touching(const Scene& scene, const ContactPair& pair) {
                        [&](const SurfaceSpec* other) { return may_touch(*one, *other); });
   });
   if (!by_bits) return "their bitmasks keep them apart";
-  if (a.rod && b.rod) return {};
+  if (a.rod && b.rod) {
+    const TieSpec* tie = tie_between(scene, a.index, b.index);
+    return tie ? "tie '" + tie->name + "' holds them together" : std::string();
+  }
   if (a.rod) return why_not_with_rod(scene, b, rod_of(scene, a));
   if (b.rod) return why_not_with_rod(scene, a, rod_of(scene, b));
   return why_not_links(scene, pair);

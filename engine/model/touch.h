@@ -11,6 +11,7 @@ namespace cprsim {
 
 struct Channel;
 struct Scene;
+struct TieSpec;
 
 /// A link or a rod.
 struct ContactParty {
@@ -32,6 +33,9 @@ inline bool same_pair(const ContactPair& a, const ContactPair& b) {
 std::vector<ContactParty> contact_parties(const Scene& scene);
 
 const std::string& party_name(const Scene& scene, const ContactParty& party);
+
+/// The first tie of two rods, indices into Scene::rods; null if nothing ties them.
+const TieSpec* tie_between(const Scene& scene, int rod, int other);
 
 /// Why a pair can never touch as the scene stands; empty if it may.
 std::string why_never_touching(const Scene& scene, const ContactPair& pair);

@@ -20,7 +20,7 @@ bool RodContacts::bound_by_pressure() {
     for (Rod& rod : rods_) {
       std::vector<RodContact>& contacts = rod.side->contacts();
       for (std::size_t i = 0; i < contacts.size(); ++i) {
-        if (contacts[i].role == ContactRole::kEcho || contacts[i].friction == 0) continue;
+        if (!contacts[i].found() || contacts[i].friction == 0) continue;
         const double pressure = rod.side->contact_state()[i].at.n.dot(contacts[i].force);
         act(contacts[i], contacts[i].friction * std::max(0.0, pressure));
       }
@@ -47,7 +47,7 @@ void RodContacts::grip_what_rests() {
     std::vector<RodContact>& contacts = rod.side->contacts();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       RodContact& contact = contacts[i];
-      if (contact.role == ContactRole::kEcho || contact.bound < 0) continue;
+      if (!contact.found() || contact.bound < 0) continue;
       const Vec3& n = rod.side->contact_state()[i].at.n;
       const double grip = (contact.force - n.dot(contact.force) * n).norm();
       contact.grip = contact.friction == 0                                ? Grip::kSmooth

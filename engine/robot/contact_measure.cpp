@@ -59,7 +59,7 @@ ContactSample RodContacts::sample() {
     const std::vector<RodContact>& contacts = rod.side->contacts();
     const std::vector<ContactRows>& rows = rod.side->contact_state();
     for (std::size_t i = 0; i < contacts.size() && i < rows.size(); ++i) {
-      if (contacts[i].role == ContactRole::kEcho) continue;
+      if (!contacts[i].found()) continue;
       const Vec3& n = rows[i].at.n;
       const double pressure = n.dot(contacts[i].force);
       ContactPoint at;

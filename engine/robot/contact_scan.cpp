@@ -80,7 +80,7 @@ double RodContacts::passed(const Rod& rod, const Scan& since, std::size_t o, std
 
 // Twice, since a cell between its ends moves with their tangents too.
 bool RodContacts::far_away(const Rod& rod) const {
-  return rod.side->contacts().empty() && 2 * moved(rod, rod.scan) < rod.scan.clearance;
+  return !touches(rod) && 2 * moved(rod, rod.scan) < rod.scan.clearance;
 }
 
 void RodContacts::scan(Rod& rod) const {

@@ -125,7 +125,7 @@ bool RodContacts::brackets(Rod& rod, const RodContact& contact, double by) const
   };
   const std::vector<RodContact>& all = rod.side->contacts();
   if (std::any_of(all.begin(), all.end(), [&](const RodContact& other) {
-        return other.role != ContactRole::kEcho && other.surface == contact.surface &&
+        return other.found() && other.surface == contact.surface &&
                lies(static_cast<double>(other.cell) + other.xi);
       }))
     return true;
@@ -242,10 +242,9 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes, bool l
   const std::size_t cells = rod.scan.nodes.size() - 1;
   // contacts with what stands still share cells with no other such
   const auto same = [&](const RodContact& contact, std::size_t o) {
-    return contact.role != ContactRole::kEcho &&
-           (contact.surface == static_cast<int>(o) ||
-            (rod.obstacles[static_cast<std::size_t>(contact.surface)].fixed() &&
-             rod.obstacles[o].fixed()));
+    return contact.found() && (contact.surface == static_cast<int>(o) ||
+                               (rod.obstacles[static_cast<std::size_t>(contact.surface)].fixed() &&
+                                rod.obstacles[o].fixed()));
   };
   const auto beside = [&](std::size_t node, std::size_t o) {
     return std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
@@ -281,8 +280,7 @@ void RodContacts::search(std::size_t index, std::vector<Change>& changes, bool l
   const auto settled = [&](std::size_t o, double at) {
     return rod.obstacles[o].rod >= 0 &&
            std::any_of(contacts.begin(), contacts.end(), [&](const RodContact& contact) {
-             if (contact.role == ContactRole::kEcho || contact.surface != static_cast<int>(o))
-               return false;
+             if (!contact.found() || contact.surface != static_cast<int>(o)) return false;
              const double other = static_cast<double>(contact.cell) + contact.xi;
              const double way = std::abs(at - other);
              return (late && way < 1) ||

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/model/flight.h"
+#include "engine/model/touch.h"
 #include "engine/robot/contacts.h"
 
 namespace cprsim {
@@ -74,9 +75,11 @@ const MeshDistance* RodContacts::mesh_of(const ShapeSpec& shape) {
 
 // Rods that neither touch anything nor are touched are left alone.
 void RodContacts::add_other_rods() {
-  const auto may_meet = [](const Rod& a, const Rod& b) {
+  const Scene& scene = *robot_.scene;
+  const auto may_meet = [&scene](const Rod& a, const Rod& b) {
     return a.touches_others && b.touches_others &&
-           may_touch(a.rod->spec->surface, b.rod->spec->surface);
+           may_touch(a.rod->spec->surface, b.rod->spec->surface) &&
+           !tie_between(scene, static_cast<int>(a.index), static_cast<int>(b.index));
   };
   std::vector<char> met(rods_.size(), 0);
   for (std::size_t a = 0; a < rods_.size(); ++a) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/robot/echoes.h"
 #include "engine/solve/phase_clock.h"
 
 namespace cprsim {
@@ -21,15 +22,11 @@ constexpr int kFirstOnly = 40;
 // and points stay where they are on their rods
 constexpr int kHeld = 30;
 
-/// In cells along the rod: contacts within a cell come after the node at its start.
-double order(const RodContact& contact) {
-  return static_cast<double>(contact.cell) + (contact.at_node() ? 0 : 0.5);
-}
-
 bool same_place(const RodContact& a, const RodContact& b) {
   // a point in a cell slides along its rod; a node comes or goes
   return a.surface == b.surface &&
-         (a.at_node() && b.at_node() ? a.cell == b.cell : std::abs(order(a) - order(b)) <= 1);
+         (a.at_node() && b.at_node() ? a.cell == b.cell
+                                     : std::abs(place_in_list(a) - place_in_list(b)) <= 1);
 }
 
 }  // namespace
@@ -39,8 +36,8 @@ bool RodContacts::pulls_most(const Rod& rod, std::size_t contact) const {
   const std::vector<RodContact>& contacts = rod.side->contacts();
   const std::vector<ContactRows>& rows = rod.side->contact_state();
   const auto pressure = [&](std::size_t i) {
-    const bool echo = contacts[i].role == ContactRole::kEcho;
-    return echo ? std::numeric_limits<double>::infinity() : rows[i].at.n.dot(contacts[i].force);
+    return contacts[i].found() ? rows[i].at.n.dot(contacts[i].force)
+                               : std::numeric_limits<double>::infinity();
   };
   const double own = pressure(contact);
   return own < 0 && (contact == 0 || own <= pressure(contact - 1)) &&
@@ -56,7 +53,7 @@ void RodContacts::review(std::size_t index, std::vector<Change>& changes) const 
   const double unit = robot_.scale.force;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const RodContact& contact = contacts[i];
-    if (contact.role == ContactRole::kEcho) continue;
+    if (!contact.found()) continue;
     const Vec3& n = rows[i].at.n;
     const double pressure = n.dot(contact.force);
     const double limit = contact.most_friction(pressure);
@@ -107,73 +104,13 @@ void RodContacts::apply(const std::vector<Change>& changes) {
     }
     for (std::size_t i = 0; i < contacts.size(); ++i)
       if (!gone[i]) next.push_back(contacts[i]);
-    std::stable_sort(next.begin(), next.end(),
-                     [](const RodContact& a, const RodContact& b) { return order(a) < order(b); });
     contacts = std::move(next);
   }
-  mirror();
-}
-
-// Forgets echoes and makes them anew from the contacts whose they are.
-void RodContacts::mirror() {
-  if (!robot_.rods_meet) return;
-  for (Rod& rod : rods_) {
-    std::vector<RodContact>& contacts = rod.side->contacts();
-    contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
-                                  [](const RodContact& c) { return c.role == ContactRole::kEcho; }),
-                   contacts.end());
-  }
-  // both entries get the same number first
-  int count = 0;
-  for (Rod& rod : rods_) {
-    std::vector<RodContact>& own = rod.side->contacts();
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (own[i].role != ContactRole::kShared || own[i].other_rod < 0) continue;
-      own[i].partner = count++;
-      RodContact echo;
-      echo.role = ContactRole::kEcho;
-      echo.other_rod = static_cast<int>(rod.index);
-      echo.partner = own[i].partner;
-      echo.cell = own[i].other_cell;
-      echo.xi = own[i].other_xi;
-      echo.lever = own[i].other_lever;
-      echo.force = -own[i].force;
-      Rod& other =
-          rods_[static_cast<std::size_t>(index_[static_cast<std::size_t>(own[i].other_rod)])];
-      other.side->contacts().push_back(echo);
-    }
-  }
-  std::vector<int> own_entry(static_cast<std::size_t>(count)), echo_entry(own_entry);
-  for (Rod& rod : rods_) {
-    std::vector<RodContact>& contacts = rod.side->contacts();
-    std::stable_sort(contacts.begin(), contacts.end(),
-                     [](const RodContact& a, const RodContact& b) { return order(a) < order(b); });
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (contacts[i].partner >= 0)
-        (contacts[i].role == ContactRole::kEcho
-             ? echo_entry
-             : own_entry)[static_cast<std::size_t>(contacts[i].partner)] = static_cast<int>(i);
-  }
-  for (Rod& rod : rods_)
-    for (RodContact& contact : rod.side->contacts())
-      if (contact.partner >= 0)
-        contact.partner = (contact.role == ContactRole::kEcho
-                               ? own_entry
-                               : echo_entry)[static_cast<std::size_t>(contact.partner)];
-}
-
-// The same where contacts stayed in their cells.
-void RodContacts::update_echoes() {
-  if (!robot_.rods_meet) return;
-  for (Rod& rod : rods_)
-    for (RodContact& echo : rod.side->contacts()) {
-      if (echo.role != ContactRole::kEcho) continue;
-      const Rod& other =
-          rods_[static_cast<std::size_t>(index_[static_cast<std::size_t>(echo.other_rod)])];
-      const RodContact& contact = other.side->contacts()[static_cast<std::size_t>(echo.partner)];
-      echo.xi = contact.other_xi;
-      echo.lever = contact.other_lever;
-    }
+  if (robot_.rods_meet)
+    mirror_contacts(robot_);
+  else
+    for (Rod& rod : rods_)
+      put_in_order(rod.side->contacts());
 }
 
 bool RodContacts::revise(int round) {
@@ -190,20 +127,21 @@ bool RodContacts::revise(int round) {
       rod.valleys.clear();
     }
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (contacts[i].role != ContactRole::kEcho &&
+      if (contacts[i].found() &&
           follow(rod, contacts[i], rod.side->contact_state()[i], round < kHeld))
         again = true;
     review(r, changes);
     search(r, changes, round >= kPatience);
   }
   if (changes.empty() && !again) {
-    update_echoes();
+    if (robot_.rods_meet) update_echoes(robot_);
     return false;
   }
   if (round >= kFirstOnly && !changes.empty()) {
     const auto first =
         std::min_element(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
-          return a.rod != b.rod ? a.rod < b.rod : order(a.contact) < order(b.contact);
+          return a.rod != b.rod ? a.rod < b.rod
+                                : place_in_list(a.contact) < place_in_list(b.contact);
         });
     changes = {*first};
   } else if (round >= kPatience && !changes.empty()) {
@@ -241,6 +179,12 @@ bool RodContacts::hold() {
   return any;
 }
 
+bool RodContacts::touches(const Rod& rod) {
+  const std::vector<RodContact>& all = rod.side->contacts();
+  return std::any_of(all.begin(), all.end(),
+                     [](const RodContact& contact) { return contact.grip != Grip::kTie; });
+}
+
 bool RodContacts::touching() const {
   return bodies_.touching() ||
          std::any_of(rods_.begin(), rods_.end(), [](const Rod& rod) { return touches(rod); });
@@ -274,11 +218,11 @@ void RodContacts::begin_stage(double since) {
 /// What the step asks of a contact, whichever guess it came with.
 void RodContacts::set_terms(const Rod& rod, RodContact& contact) const {
   contact.may_rest = lagged_ || eased_ > 0;
-  if (contact.role == ContactRole::kEcho) return;
+  if (!contact.found()) return;
   contact.bound = -1;
   if (lagged_) {
     const auto was = std::find_if(rod.before.begin(), rod.before.end(), [&](const RodContact& c) {
-      return c.role != ContactRole::kEcho && same_place(c, contact);
+      return c.found() && same_place(c, contact);
     });
     const double pressure = was == rod.before.end() ? 0 : -was->lever.dot(was->force) / rod.radius;
     contact.bound = contact.friction * std::max(0.0, pressure);
@@ -296,16 +240,16 @@ void RodContacts::refresh() {
 }
 
 bool RodContacts::changed(const Rod& rod, bool soft_too) {
-  // echoes change with the contacts whose they are
+  // echoes change with the contacts whose they are, ties never
   const auto of_interest = [&](const std::vector<RodContact>& all,
                                const std::vector<RodContact>& others) {
     std::vector<RodContact> kept;
     for (const RodContact& c : all) {
       const bool comes = std::none_of(others.begin(), others.end(), [&](const RodContact& other) {
-        return other.role != ContactRole::kEcho && same_place(c, other);
+        return other.found() && same_place(c, other);
       });
       const bool passed_over = !soft_too && c.give > 0 && comes;
-      if (c.role != ContactRole::kEcho && !passed_over) kept.push_back(c);
+      if (c.found() && !passed_over) kept.push_back(c);
     }
     return kept;
   };

@@ -19,6 +19,9 @@
 // cell, so that each pair of parts is looked at once. A rod that is bent no tighter than twice its
 // radius does not come near itself within a.
 //
+// Ties (engine/robot/ties.h) stand among a rod's contacts, but are nothing that is looked for here.
+// Rods that are tied to each other do not touch each other, as links do not that a joint joins.
+//
 // Bodies touch each other by engine/robot/body_contacts.h, which is part of this.
 #pragma once
 
@@ -177,7 +180,7 @@ class RodContacts {
 
   static bool changed(const Rod& rod, bool soft_too);
 
-  static bool touches(const Rod& rod) { return !rod.side->contacts().empty(); }
+  static bool touches(const Rod& rod);
 
   static const Near& near(const Scan& scan, const Rod& rod, std::size_t cell,
                           std::size_t obstacle) {
@@ -197,8 +200,6 @@ class RodContacts {
   void set_terms(const Rod& rod, RodContact& contact) const;
   bool place_foot(const Rod& rod, RodContact& contact) const;
   double sunk(const Rod& rod, const RodContact& contact) const;
-  void update_echoes();
-  void mirror();
 
   void soften(const SurfaceSpec& a, const SurfaceSpec& b, Obstacle& obstacle) const;
   bool comes_nearer(const Rod& rod, const RodContact& contact, double d) const;

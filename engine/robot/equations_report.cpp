@@ -168,9 +168,9 @@ class ContactCheck {
     if (other.other_rod != static_cast<int>(r) || other.partner != index || other.role == c.role ||
         other.role == ContactRole::kOwn || (other.grip == Grip::kTie) != tie)
       return false;
-    if (tie || c.role == ContactRole::kEcho) return true;
-    return !side(r)->surfaces()[static_cast<std::size_t>(c.surface)].shape &&
-           in_cell(other_rod, c.other_cell, c.other_xi);
+    if (c.role == ContactRole::kEcho) return true;
+    if (!in_cell(other_rod, c.other_cell, c.other_xi)) return false;
+    return tie || !side(r)->surfaces()[static_cast<std::size_t>(c.surface)].shape;
   }
 
   const Robot& robot_;

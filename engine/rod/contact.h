@@ -88,6 +88,9 @@ struct RodContact {
 
   bool at_node() const { return xi == 0; }
 
+  /// Neither an echo nor a tie, but a point that was found to touch and may come and go.
+  bool found() const { return role != ContactRole::kEcho && grip != Grip::kTie; }
+
   /// l at an end whose axes are R.
   Vec3 lever_at(const Mat3& R) const { return grip == Grip::kTie ? Vec3(R * arm) : lever; }
 

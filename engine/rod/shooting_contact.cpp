@@ -25,7 +25,7 @@ constexpr double kSameRows = 1e-15;
 }  // namespace
 
 void ShootingRod::set_surfaces(const std::vector<Surface>& surfaces, double radius, bool friction) {
-  touch_ = std::make_unique<Touch>();
+  if (!touch_) touch_ = std::make_unique<Touch>();  // else it is tied already
   touch_->surfaces = surfaces;
   touch_->radius = radius;
   touch_->motion.start(friction, nodes_.size());

@@ -96,7 +96,7 @@ double contact_energy(const RobotRod& rod) {
   const std::vector<ContactRows>& rows = side->contact_state();
   double energy = 0;
   for (std::size_t i = 0; i < std::min(contacts.size(), rows.size()); ++i) {
-    if (contacts[i].role == ContactRole::kEcho || contacts[i].give == 0) continue;
+    if (!contacts[i].found() || contacts[i].give == 0) continue;
     const double depth = std::max(0.0, rod.section.half_width - rows[i].at.d);
     energy += 0.5 * depth * depth / contacts[i].give;
   }

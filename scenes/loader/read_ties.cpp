@@ -44,12 +44,6 @@ std::string obstacle(const Reading& r, const TieSpec& tie, int index, std::strin
     hint = "list <extension/> among the effects";
     return "ties of a rod that cannot stretch, as " + whose;
   }
-  for (const auto& [effect, name] :
-       {std::pair{Effect::kContact, "contact"}, std::pair{Effect::kSelfContact, "self_contact"}})
-    if (effects.has(effect) && !rod.lacks(name)) {
-      hint = std::string("give the rod <without>") + name + "</without>";
-      return "contact of a tied rod, as " + whose;
-    }
   // what is fed in at the base moves along with the rod, but not at a fraction of its length
   const std::vector<double>& places = index == tie.rod ? tie.s : tie.other_s;
   const bool inside = std::any_of(places.begin(), places.end(), [](double s) { return s < 1; });

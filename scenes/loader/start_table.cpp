@@ -65,8 +65,10 @@ std::string take(Reading& r, const Table& table) {
   for (const auto& [name, of] : columns) {
     if (!problem.empty()) return problem;
     auto& rods = r.scene.rods;
-    const auto rod = std::find_if(rods.begin(), rods.end(),
-                                  [&](const RodSpec& candidate) { return candidate.name == name; });
+    // clang 14 captures no structured binding
+    const auto rod = std::find_if(
+        rods.begin(), rods.end(),
+        [&wanted = name](const RodSpec& candidate) { return candidate.name == wanted; });
     if (rod == rods.end()) {
       std::vector<std::string> known;
       for (const RodSpec& candidate : rods)
