@@ -33,23 +33,6 @@ Scene pulled_rod(Method method, bool displaced) {
   return scene;
 }
 
-/// A wall across x at this distance.
-void add_wall(Scene& scene, double distance) {
-  switch_on(scene, {Effect::kContact});
-  BodySpec wall;
-  wall.name = "wall";
-  wall.is_static = true;
-  wall.X_WB.p = {distance, 0, 0};
-  wall.X_WB.R.col(0) = Vec3::UnitZ();
-  wall.X_WB.R.col(1) = Vec3::UnitY();
-  wall.X_WB.R.col(2) = -Vec3::UnitX();
-  ColliderSpec collider;
-  collider.name = "plane";
-  collider.shape.kind = ShapeKind::kPlane;
-  wall.colliders.push_back(collider);
-  scene.bodies.push_back(wall);
-}
-
 Scene moving(Scene scene) {
   scene.simulation.mode = Mode::kDynamic;
   scene.simulation.initial_static = true;

@@ -57,6 +57,22 @@ LoadSpec& add_load(Scene& scene, double s, const Vec3& force, const Vec3& torque
   return scene.loads.back();
 }
 
+void add_wall(Scene& scene, double distance) {
+  switch_on(scene, {Effect::kContact});
+  BodySpec wall;
+  wall.name = "wall";
+  wall.is_static = true;
+  wall.X_WB.p = {distance, 0, 0};
+  wall.X_WB.R.col(0) = Vec3::UnitZ();
+  wall.X_WB.R.col(1) = Vec3::UnitY();
+  wall.X_WB.R.col(2) = -Vec3::UnitX();
+  ColliderSpec collider;
+  collider.name = "plane";
+  collider.shape.kind = ShapeKind::kPlane;
+  wall.colliders.push_back(collider);
+  scene.bodies.push_back(wall);
+}
+
 Scene stewart_gough(const std::vector<double>& lengths, bool clamped, double plate_mass) {
   constexpr double kDegree = std::numbers::pi / 180, kRadius = 0.087;
   constexpr double kBase[] = {-10, 10, 110, 130, 230, 250}, kPlate[] = {-50, 50, 70, 170, 190, 290};

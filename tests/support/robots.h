@@ -31,6 +31,9 @@ void let_go(LoadSpec& load, double at = 0);
 LoadSpec& add_load(Scene& scene, double s, const Vec3& force, const Vec3& torque = Vec3::Zero(),
                    bool until_zero = false);
 
+/// A plane across x at this distance, which may be touched from the side of the origin.
+void add_wall(Scene& scene, double distance);
+
 /// The continuum Stewart-Gough robot of Till et al. (hole circles of 87 mm), legs clamped in the
 /// base and aligned with the plate's normal; `clamped` ties their spin too.
 Scene stewart_gough(const std::vector<double>& lengths, bool clamped, double plate_mass = 0.1);

@@ -144,13 +144,15 @@ int exit_code_of(const Run& run) {
   return std::any_of(results.begin(), results.end(), fails) ? kExitExpectationFailed : kExitDone;
 }
 
-/// Newton's method finds unstable equilibria as readily as stable ones: say which it was. What
-/// obstacles hold back is not counted.
+/// Newton's method finds unstable equilibria as readily as stable ones: say which it was. What ties
+/// and obstacles hold back is not counted, so that nothing is said of tied rods, and of rods that
+/// touch something not that they are unstable.
 void judge_stability(Run& run, const Simulation& simulation) {
   if (run.scene.simulation.mode != Mode::kStatic || run.report.end != RunEnd::kDone ||
-      run.scene.rods.empty() || !simulation.has_visitable_state())
+      run.scene.rods.empty() || !run.scene.ties.empty() || !simulation.has_visitable_state())
     return;
   const Stability found = count_unstable(simulation.robot());
+  if (found.unstable > 0 && simulation.now().contact.count > 0) return;
   run.report.stability = to_string(found.verdict);
   run.report.unstable_directions = found.unstable;
 }

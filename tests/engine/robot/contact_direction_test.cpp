@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "engine/robot/ties.h"
 #include "engine/rod/contact.h"
 #include "tests/engine/robot/direction_error.h"
 #include "tests/engine/robot/sample_scenes.h"
@@ -176,6 +177,41 @@ TEST(ContactDirection, IsExactWhereTendonsAskForTensions) {
                       kSlopeTolerance)
                 << static_cast<int>(method) << displaced << shared << dynamic;
       }
+}
+
+/// Ties along the rod that touches and at its tip, where it touches, too.
+void tie_up(Scene& scene, Robot* robot, double h) {
+  if (!robot) {
+    TieSpec one, two;
+    one.rod = two.other = 1;
+    one.other = 0;
+    two.rod = 2;
+    one.s = {0.4, 1};
+    one.other_s = {0.3, 0.7};
+    one.offset = Vec3(0.2, -0.1, 0.3);
+    two.s = two.other_s = {0.7};
+    scene.ties = {one, two};
+    if (h > 0) scene.solver.points = static_cast<int>(h);
+    return;
+  }
+  TouchingRod& side = *robot->rods[1].model->touching();
+  RodContact last = side.contacts().back();
+  last.cell = side.contact_grid().size() - 1;
+  last.xi = 0;
+  side.contacts().push_back(last);
+  tie_rods(*robot);
+}
+
+TEST(ContactDirection, IsExactWhereRodsAreTied) {
+  for (Method method : {Method::kShooting, Method::kStrain, Method::kCollocation})
+    for (const int points : {0, 30})
+      for (Grip grip : {Grip::kSmooth, Grip::kStick, Grip::kSlip})
+        for (bool dynamic : {false, true})
+          EXPECT_LT(slope_error(grip, dynamic, 0.01, 1, ball(), nullptr, method,
+                                [&](Scene& scene, Robot* robot) { tie_up(scene, robot, points); }),
+                    kSlopeTolerance)
+              << static_cast<int>(method) << ", " << points << ", " << static_cast<int>(grip)
+              << dynamic;
 }
 
 // Contacts and segments' starts recombine the same columns.
