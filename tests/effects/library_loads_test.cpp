@@ -30,7 +30,7 @@ class LibraryLoads : public Program {
     const Outcome run_of =
         run("run scene.xml -o out",
             "LD_BIND_NOW= LD_DEBUG=libs,bindings LD_DEBUG_OUTPUT=" + std::string(kLoads));
-    EXPECT_EQ(run_of.code, 0) << run_of.err;
+    complaints_ = run_of.code == 0 ? "" : run_of.err;
     std::map<std::string, int> used;
     for (const auto& file : std::filesystem::directory_iterator(folder_.path())) {
       if (file.path().stem() != kLoads) continue;
@@ -39,6 +39,8 @@ class LibraryLoads : public Program {
     }
     return used;
   }
+
+  std::string complaints_;  ///< of the last run
 
  private:
   static void count(const std::string& told, std::map<std::string, int>& used) {
@@ -79,6 +81,7 @@ std::string with_link(const std::string& link) {
 
 TEST_F(LibraryLoads, AreNoneForASceneOfRodsAndLinks) {
   const std::map<std::string, int> used = used_for(brief());
+  EXPECT_EQ(complaints_, "");
   EXPECT_GT(calls(used, "libtinyxml2"), 0) << "nothing was traced";
   for (const char* library : kLibraries)
     EXPECT_EQ(calls(used, library), 0) << library;
@@ -89,6 +92,7 @@ TEST_F(LibraryLoads, AreBulletsWhereABodyFlies) {
       R"(<link name="ball"><pose>1 0 1 0 0 0</pose>
         <inertial><mass>0.1</mass><inertia><ixx>1e-5</ixx><iyy>1e-5</iyy><izz>1e-5</izz></inertia></inertial>
         <collision name="c"><geometry><sphere><radius>0.02</radius></sphere></geometry></collision></link>)"));
+  EXPECT_EQ(complaints_, "");
   EXPECT_GT(calls(used, "libBullet"), 0);
   for (const char* library : {"libassimp", "libEGL", "libGL"})
     EXPECT_EQ(calls(used, library), 0) << library;
@@ -100,6 +104,7 @@ TEST_F(LibraryLoads, AreAssimpsWhereALinkHasAMesh) {
   const std::map<std::string, int> used = used_for(with_link(
       R"(<link name="corner"><visual name="v"><geometry><mesh><uri>corner.obj</uri></mesh></geometry></visual></link>
       <joint name="held" type="fixed"><parent>world</parent><child>corner</child></joint>)"));
+  EXPECT_EQ(complaints_, "");
   EXPECT_GT(calls(used, "libassimp"), 0);
   for (const char* library : {"libBullet", "libEGL", "libGL"})
     EXPECT_EQ(calls(used, library), 0) << library;
@@ -110,8 +115,11 @@ TEST_F(LibraryLoads, AreOfOpenGlWhereAFilmIsDrawn) {
       used_for(replaced(brief(), "<cprsim:record",
                         R"(<cprsim:camera name="c"><eye>1 1 1</eye><look_at>0 0 1</look_at>
       <image><width>64</width><height>64</height></image></cprsim:camera>
-    <cprsim:video camera="c" fps="50" file="frames/"/>
+    <cprsim:video camera="c" fps="50" file="swing.mp4"/>
     <cprsim:record)"));
+  if (has(complaints_, "ffmpeg") || has(complaints_, "libegl"))
+    GTEST_SKIP() << "no films here: " << complaints_;
+  EXPECT_EQ(complaints_, "");
   EXPECT_GT(calls(used, "libEGL"), 0);
   for (const char* library : {"libBullet", "libassimp"})
     EXPECT_EQ(calls(used, library), 0) << library;

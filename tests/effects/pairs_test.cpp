@@ -268,24 +268,8 @@ TEST_P(PairsOfEffects, FeelDryFrictionOfTheBase) {
     EXPECT_GT((answer(method, {sprung, 1}) - answer(method, {rubs, 1})).norm(), 1e-3);
 }
 
-/// A wall beside the rod, which its tip is pressed against.
-void add_wall(Scene& scene, double friction) {
-  switch_on(scene, {Effect::kContact});
-  if (friction > 0) switch_on(scene, {Effect::kFriction});
-  BodySpec wall;
-  wall.name = "wall";
-  wall.is_static = true;
-  wall.X_WB.p = {0.07, 0, 0};
-  wall.X_WB.R.col(0) = Vec3::UnitZ();
-  wall.X_WB.R.col(1) = Vec3::UnitY();
-  wall.X_WB.R.col(2) = -Vec3::UnitX();
-  ColliderSpec collider;
-  collider.name = "plane";
-  collider.shape.kind = ShapeKind::kPlane;
-  collider.surface.friction = scene.rods[0].surface.friction = friction;
-  wall.colliders.push_back(collider);
-  scene.bodies.push_back(wall);
-}
+/// Of the wall beside the rod, which its tip is pressed against.
+constexpr double kWall = 0.07;
 
 // A rod that touches something has each effect, too: the wall lets nothing through, the law of
 // friction holds, methods agree, and the effect is felt as a change of what presses on the wall.
@@ -302,7 +286,7 @@ TEST_P(PairsOfEffects, KeepTheLawsOfContact) {
       for (const Method method : kEveryMethod) {
         SCOPED_TRACE(method_name(method));
         Scene scene = rod_for_pairs(moving());
-        add_wall(scene, friction);
+        add_wall(scene, kWall, friction);
         if (i >= 0) effects_[at].add(scene, 1);
         Simulation simulation(coarsely(scene, method));
         const Snapshot end = run_to_end(simulation);

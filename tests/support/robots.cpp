@@ -57,8 +57,12 @@ LoadSpec& add_load(Scene& scene, double s, const Vec3& force, const Vec3& torque
   return scene.loads.back();
 }
 
-void add_wall(Scene& scene, double distance) {
+void add_wall(Scene& scene, double distance, double friction) {
   switch_on(scene, {Effect::kContact});
+  if (friction > 0) {
+    switch_on(scene, {Effect::kFriction});
+    scene.rods[0].surface.friction = friction;
+  }
   BodySpec wall;
   wall.name = "wall";
   wall.is_static = true;
@@ -69,6 +73,7 @@ void add_wall(Scene& scene, double distance) {
   ColliderSpec collider;
   collider.name = "plane";
   collider.shape.kind = ShapeKind::kPlane;
+  if (friction > 0) collider.surface.friction = friction;
   wall.colliders.push_back(collider);
   scene.bodies.push_back(wall);
 }

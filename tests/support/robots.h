@@ -31,8 +31,9 @@ void let_go(LoadSpec& load, double at = 0);
 LoadSpec& add_load(Scene& scene, double s, const Vec3& force, const Vec3& torque = Vec3::Zero(),
                    bool until_zero = false);
 
-/// A plane across x at this distance, which may be touched from the side of the origin.
-void add_wall(Scene& scene, double distance);
+/// A plane across x at this distance, which may be touched from the side of the origin. Friction is
+/// that with rod 0.
+void add_wall(Scene& scene, double distance, double friction = 0);
 
 /// The continuum Stewart-Gough robot of Till et al. (hole circles of 87 mm), legs clamped in the
 /// base and aligned with the plate's normal; `clamped` ties their spin too.

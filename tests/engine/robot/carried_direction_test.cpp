@@ -114,20 +114,10 @@ TEST(NewtonDirection, IsExactWithTendonsInAFluidUnderLoadsAlongTheRod) {
   expect_exact(scene, {Rates::kGeneralizedAlpha}, "dynamics, everything");
 }
 
-// Two ends of one section, arms of any length, a section that is tied twice.
 TEST(NewtonDirection, IsExactWithTies) {
   for (EndJoint base : {EndJoint::kFixed, EndJoint::kBall}) {
     Scene scene = chain_of_rods(base, EndJoint::kRevolute);
-    TieSpec one, two;
-    one.rod = 0;
-    one.other = two.other = 1;
-    two.rod = 2;
-    one.s = {0.4, 1};
-    one.other_s = {0.3, 0.7};
-    one.offset = Vec3(0.2, -0.1, 0.3);
-    two.s = two.other_s = {0.7};
-    scene.ties = {one, two};
-    scene.effects.set(Effect::kExtension, true);
+    tie_chain(scene);
     expect_exact(scene, {}, "statics");
     expect_exact(scene, {Rates::kBackwardEuler}, "dynamics");
     Setting setting;

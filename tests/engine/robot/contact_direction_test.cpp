@@ -180,18 +180,16 @@ TEST(ContactDirection, IsExactWhereTendonsAskForTensions) {
 }
 
 /// Ties along the rod that touches and at its tip, where it touches, too.
-void tie_up(Scene& scene, Robot* robot, double h) {
+void tie_up(Scene& scene, Robot* robot, int points) {
   if (!robot) {
-    TieSpec one, two;
-    one.rod = two.other = 1;
-    one.other = 0;
-    two.rod = 2;
-    one.s = {0.4, 1};
-    one.other_s = {0.3, 0.7};
-    one.offset = Vec3(0.2, -0.1, 0.3);
-    two.s = two.other_s = {0.7};
-    scene.ties = {one, two};
-    if (h > 0) scene.solver.points = static_cast<int>(h);
+    tie_chain(scene);
+    TieSpec last;
+    last.rod = 1;
+    last.other = 0;
+    last.s = {1};
+    last.other_s = {0.8};
+    scene.ties.push_back(last);
+    if (points > 0) scene.solver.points = points;
     return;
   }
   TouchingRod& side = *robot->rods[1].model->touching();

@@ -86,6 +86,19 @@ Scene chain_of_rods(EndJoint base, EndJoint tip) {
   return scene;
 }
 
+void tie_chain(Scene& scene) {
+  TieSpec one, two;
+  one.rod = 0;
+  one.other = two.other = 1;
+  two.rod = 2;
+  one.s = {0.4, 1};
+  one.other_s = {0.3, 0.7};
+  one.offset = Vec3(0.2, -0.1, 0.3);
+  two.s = two.other_s = {0.7};
+  scene.ties = {one, two};
+  scene.effects.set(Effect::kExtension, true);
+}
+
 Scene jointed_arms(JointKind first, JointKind second) {
   Scene scene;
   scene.effects.set(Effect::kGravity, true);

@@ -62,6 +62,10 @@ StageRates start_step(Robot& robot, Equations& equations, SchemeKind scheme, dou
 /// Moves every unknown of the robot by about `size`, so that no row is left zero.
 void disturb(Robot& robot, Equations& equations, Numbers& numbers, double size);
 
+/// Ties the rods of a chain to each other: two ends in one section of the middle rod, arms of any
+/// length, one at a tip.
+void tie_chain(Scene& scene);
+
 /// By a method whose contacts are at the borders of its elements, six of them.
 void cut_for_contact(Scene& scene, Method method);
 
