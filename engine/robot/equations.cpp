@@ -145,6 +145,8 @@ void Equations::set_fraction(double fraction) {
                                 robot_.scale.length, robot_.scale.moment(), robot_.scale.force)
                           .closure;
     }
+    // the rows are those of whatever state was looked at last
+    if (!robot_.scene->ties.empty()) evaluate();
     tie_gap_.clear();
     for (const Pair& pair : pairs_)
       if (is_tie(pair)) tie_gap_.push_back(pair.rows.value);
